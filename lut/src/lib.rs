@@ -1,0 +1,23 @@
+//! Atmospheric media and the lookup tables made from them.
+//!
+//! This crate holds the *problem*: what a medium is ([`Medium`]), how it scatters ([`PhaseFunction`]), the planet
+//! it lies on ([`Planet`]), geometry that stays exact near the ground ([`geometry`]) and the mappings between table
+//! texels and physical parameters ([`mapping`]). It knows nothing of Vulkan, windows or command lines, so that an
+//! engine can depend on it alone.
+//!
+//! Units are SI throughout: metres, 1/m, radians, W·m⁻²·sr⁻¹·nm⁻¹. Everything is `f64`.
+#![forbid(unsafe_code)]
+
+mod bands;
+pub mod geometry;
+pub mod mapping;
+mod medium;
+pub mod phase;
+mod planet;
+mod profile;
+
+pub use bands::{BAND_COUNT, BAND_NAMES, Bands};
+pub use medium::{Constituent, Medium, MediumError};
+pub use phase::{PhaseError, PhaseFunction};
+pub use planet::{Planet, PlanetError};
+pub use profile::{DensityProfile, ProfileError};

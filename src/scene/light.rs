@@ -1,0 +1,50 @@
+//! What shines on the scene.
+
+use glam::DVec3;
+use welkin_lut::Bands;
+
+use super::Direction;
+
+/// A source of light outside the medium.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Light {
+    /// So far away that its rays are parallel, but for the width of its disc: the sun, a moon.
+    Directional(DirectionalLight),
+    /// A point that shines equally in all directions.
+    Point(PointLight),
+    /// Uniform radiance from every direction of the surrounding space.
+    Environment(EnvironmentLight),
+}
+
+/// A disc at infinity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DirectionalLight {
+    /// What it is called in reports: "sun", "moon".
+    pub name: String,
+    /// Where its centre stands in the sky, without refraction.
+    pub direction: Direction,
+    /// Irradiance on a plane normal to the beam, above the atmosphere, W·m⁻²·nm⁻¹.
+    pub irradiance: Bands,
+    /// Angular radius of the disc, rad; 0 is an exactly parallel beam with no visible disc.
+    pub angular_radius_rad: f64,
+    /// Whether the disc darkens towards its limb as the sun's does.
+    pub limb_darkening: bool,
+}
+
+/// A point source.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointLight {
+    /// What it is called in reports.
+    pub name: String,
+    /// Position in the local frame (east, north, up) from the ground point below the camera, m.
+    pub position_m: DVec3,
+    /// Radiant intensity, W·sr⁻¹·nm⁻¹.
+    pub intensity: Bands,
+}
+
+/// Uniform surroundings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnvironmentLight {
+    /// Radiance arriving from every direction of space, W·m⁻²·sr⁻¹·nm⁻¹.
+    pub radiance: Bands,
+}
