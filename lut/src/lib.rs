@@ -18,6 +18,6 @@ mod profile;
 
 pub use bands::{BAND_COUNT, BAND_NAMES, Bands};
 pub use medium::{Constituent, Medium, MediumError};
-pub use phase::{PhaseError, PhaseFunction};
+pub use phase::{DropletFit, PhaseError, PhaseFunction, TabulatedPhase};
 pub use planet::{Planet, PlanetError};
 pub use profile::{DensityProfile, ProfileError};
