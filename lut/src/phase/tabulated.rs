@@ -222,7 +222,8 @@ fn check(points: &[(f64, f64)], falling: bool) -> Result<(), PhaseError> {
         if !(value.is_finite() && value >= 0.0) {
             return Err(point(i + 1, format!("the phase function is {value}; it must be finite and at least 0")));
         }
-        if i > 0 && (points[i - 1].0 > cos_theta) != falling || i > 0 && points[i - 1].0 == cos_theta {
+        let in_order = |previous: f64| if falling { previous > cos_theta } else { previous < cos_theta };
+        if i > 0 && !in_order(points[i - 1].0) {
             return Err(point(i + 1, "the angles must all rise or all fall".into()));
         }
     }
