@@ -1,0 +1,104 @@
+//! From a pass's name to SPIR-V and what its host must know.
+
+use std::collections::BTreeMap;
+
+use naga::ShaderStage;
+use naga::back::spv;
+use naga::compact::{KeepUnused, compact};
+use naga::valid::{ModuleInfo, ValidationFlags, Validator};
+
+use crate::{Binding, ShaderError, Sources, StructLayout, compose, reflect};
+
+/// Names that a pass's source is specialised by.
+pub type Definitions = BTreeMap<String, Definition>;
+
+/// A definition's value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Definition {
+    /// `true` satisfies `#ifdef`; `false` is the same as no definition.
+    Bool(bool),
+    /// A signed integer, for `#{NAME}` and `#if NAME < 3`.
+    I32(i32),
+    /// An unsigned integer, likewise; `#{NAME}` puts its digits, without the suffix `u`.
+    U32(u32),
+}
+
+/// A compiled pass.
+#[derive(Debug, Clone)]
+pub struct Shader {
+    /// The pass's name: its file's stem.
+    pub name: String,
+    /// SPIR-V 1.3, with names.
+    pub spirv: Vec<u32>,
+    /// The entry point, always a compute stage.
+    pub entry_point: String,
+    /// `@workgroup_size`.
+    pub workgroup_size: [u32; 3],
+    /// The resources that the entry point uses, in the order of group and index.
+    pub bindings: Vec<Binding>,
+    structs: BTreeMap<String, StructLayout>,
+}
+
+/// Compiles a pass that is embedded in this crate.
+///
+/// # Errors
+/// As [`Shader::from_sources`].
+pub fn compile(pass: &str, definitions: &Definitions) -> Result<Shader, ShaderError> {
+    Shader::from_sources(&Sources::embedded(), pass, definitions)
+}
+
+impl Shader {
+    /// Compiles a pass of a set of sources.
+    ///
+    /// # Errors
+    /// Any [`ShaderError`] but [`ShaderError::Unreadable`]; what is wrong in the WGSL comes with file, line and column,
+    /// also where the fault is in an imported module.
+    pub fn from_sources(sources: &Sources, pass: &str, definitions: &Definitions) -> Result<Self, ShaderError> {
+        let (file, mut module) = compose::compose(sources, pass, definitions)?;
+        let entry =
+            module.entry_points.iter().find(|entry| entry.name == "main" && entry.stage == ShaderStage::Compute);
+        let Some(entry) = entry.cloned() else { return Err(ShaderError::NoEntryPoint { file }) };
+        module.entry_points = vec![entry.clone()];
+        let spirv_error = |message: String| ShaderError::Spirv { file: file.clone(), message };
+        let structs = reflect::structs(&module).map_err(spirv_error)?.into_iter().collect();
+        compact(&mut module, KeepUnused::No);
+        let info = Validator::new(ValidationFlags::all(), naga::valid::Capabilities::default())
+            .validate(&module)
+            .map_err(|error| spirv_error(error.to_string()))?;
+        let uses = info.get_entry_point(0);
+        let bindings = reflect::bindings(&file, &module, |variable| !uses[variable].is_empty())?;
+        let spirv = spirv(&module, &info).map_err(|error| spirv_error(error.to_string()))?;
+        let name = pass.to_owned();
+        Ok(Self { name, spirv, entry_point: entry.name, workgroup_size: entry.workgroup_size, bindings, structs })
+    }
+
+    /// The layout of a WGSL struct that the pass or a module it imports declares, by its name.
+    pub fn struct_layout(&self, name: &str) -> Option<&StructLayout> {
+        self.structs.get(name)
+    }
+}
+
+fn spirv(module: &naga::Module, info: &ModuleInfo) -> Result<Vec<u32>, spv::Error> {
+    let options = spv::Options {
+        lang_version: (1, 3),
+        flags: spv::WriterFlags::DEBUG,
+        fake_missing_bindings: false,
+        // Welkin's own loops end; a counter in each would cost time. Out-of-bounds access is left to the device's
+        // robust access, which the host turns on.
+        force_loop_bounding: false,
+        binding_map: identity_bindings(module),
+        ..spv::Options::default()
+    };
+    spv::write_vec(module, info, &options, None)
+}
+
+/// Set and binding numbers in SPIR-V are those of the WGSL.
+fn identity_bindings(module: &naga::Module) -> spv::BindingMap {
+    let resources = module.global_variables.iter().filter_map(|(_, variable)| variable.binding);
+    resources
+        .map(|resource| {
+            let (descriptor_set, binding) = (resource.group, resource.binding);
+            (resource, spv::BindingInfo { descriptor_set, binding, binding_array_size: None })
+        })
+        .collect()
+}
