@@ -131,7 +131,7 @@ fn sampling_inverts_the_share_of_light_further_back() {
             continue;
         }
         let mut previous = phase.sample(0.0);
-        assert!(previous >= -1.0 && previous < -1.0 + 4.0 * f64::EPSILON, "{phase:?}: {previous}");
+        assert!((-1.0..-1.0 + 4.0 * f64::EPSILON).contains(&previous), "{phase:?}: {previous}");
         for i in 1..=64 {
             let u = f64::from(i) / 64.0;
             let c = phase.sample(u);

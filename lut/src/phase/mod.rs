@@ -10,6 +10,7 @@ mod henyey_greenstein;
 mod henyey_greenstein_draine;
 mod inversion;
 mod isotropic;
+mod monotone_cubic;
 mod quadrature;
 mod rayleigh;
 mod schlick;

@@ -2,13 +2,18 @@
 
 use std::f64::consts::PI;
 
+use super::monotone_cubic::{Interval, monotone_slopes};
 use super::{PhaseError, inversion, quadrature};
 
-/// A table of (cos θ, P), joined by a monotone cubic in cos θ and scaled to ∫P dω = 1.
+/// Pieces into which each step of a table is cut. Eight follow a fall by a factor of four to 1e-4.
+const PIECES: usize = 8;
+
+/// A table of (cos θ, P), joined by monotone cubics in cos θ and scaled to ∫P dω = 1.
 ///
-/// The curve is the Hermite cubic with the slopes of Fritsch & Butland 1984: it passes through every point, never
-/// overshoots between two of them (so it stays non-negative) and has a continuous slope. Its integral is a quartic on
-/// each interval, so the normalisation is exact and the sampling inverts the curve itself.
+/// A monotone cubic passes through every point and never overshoots between two of them, so it stays non-negative.
+/// Where all points are positive, ln P is joined first and each step of the table cut into pieces along that curve,
+/// because a peak that falls to a third within a step is far from a cubic but near to an exponential. P itself is then
+/// a cubic on each piece; its integral is a quartic, so the normalisation is exact and the sampling inverts the curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TabulatedPhase {
     cos_theta: Vec<f64>,
@@ -32,7 +37,7 @@ impl TabulatedPhase {
         if falling {
             points.reverse();
         }
-        let (cos_theta, mut value): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+        let (cos_theta, mut value) = refine(&points);
         let mut slope = monotone_slopes(&cos_theta, &value);
         let mut cumulative = vec![0.0];
         for i in 1..cos_theta.len() {
@@ -89,7 +94,7 @@ impl TabulatedPhase {
         self.table_integral
     }
 
-    /// The points (cos θ rising from -1 to 1, P in 1/sr), scaled.
+    /// The curve's points (cos θ rising from -1 to 1, P in 1/sr), scaled: the table's and those between.
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         self.cos_theta.iter().copied().zip(self.value.iter().copied())
     }
@@ -131,27 +136,27 @@ impl TabulatedPhase {
     }
 }
 
-/// The Hermite cubic between two points; t runs from 0 to 1.
-struct Interval {
-    h: f64,
-    value: [f64; 2],
-    slope: [f64; 2],
-}
-
-impl Interval {
-    fn value(&self, t: f64) -> f64 {
-        let s = 1.0 - t;
-        let ends = self.value[0] * s * s * (1.0 + 2.0 * t) + self.value[1] * t * t * (3.0 - 2.0 * t);
-        ends + self.h * s * t * (self.slope[0] * s - self.slope[1] * t)
+/// The points and, where all are positive, points between them on the monotone cubic through (cos θ, ln P).
+fn refine(points: &[(f64, f64)]) -> (Vec<f64>, Vec<f64>) {
+    let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+    if y.contains(&0.0) {
+        return (x, y);
     }
-
-    /// ∫ P dcos θ from the lower end to t.
-    fn integral(&self, t: f64) -> f64 {
-        let (t2, t3, t4) = (t * t, t * t * t, t * t * t * t);
-        let ends = self.value[0] * (t - t3 + 0.5 * t4) + self.value[1] * (t3 - 0.5 * t4);
-        let slopes = self.slope[0] * (0.5 * t2 - t3 * (2.0 / 3.0) + 0.25 * t4) + self.slope[1] * (0.25 * t4 - t3 / 3.0);
-        self.h * (ends + self.h * slopes)
+    let log: Vec<f64> = y.iter().map(|y| y.ln()).collect();
+    let slopes = monotone_slopes(&x, &log);
+    let (mut fine_x, mut fine_y) = (vec![x[0]], vec![y[0]]);
+    for i in 1..x.len() {
+        let h = x[i] - x[i - 1];
+        let curve = Interval { h, value: [log[i - 1], log[i]], slope: [slopes[i - 1], slopes[i]] };
+        for piece in 1..PIECES {
+            let t = piece as f64 / PIECES as f64;
+            fine_x.push(x[i - 1] + h * t);
+            fine_y.push(curve.value(t).exp());
+        }
+        fine_x.push(x[i]);
+        fine_y.push(y[i]);
     }
+    (fine_x, fine_y)
 }
 
 /// The t at which the interval's integral reaches `target`.
@@ -160,38 +165,6 @@ fn invert_interval(interval: &Interval, target: f64) -> f64 {
     inversion::invert_increasing(target / total, |t| {
         (interval.integral(t) / total, interval.h * interval.value(t) / total)
     })
-}
-
-/// Slopes that keep the cubic between its points (Fritsch & Butland 1984; at the ends the three-point formula of
-/// Moler 2004, "Numerical Computing with MATLAB", chapter 3).
-fn monotone_slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
-    let n = x.len();
-    let h: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let secant: Vec<f64> = y.windows(2).zip(&h).map(|(pair, h)| (pair[1] - pair[0]) / h).collect();
-    if n == 2 {
-        return vec![secant[0]; 2];
-    }
-    let inner = |i: usize| {
-        if secant[i - 1] * secant[i] <= 0.0 {
-            return 0.0;
-        }
-        let (w1, w2) = (2.0 * h[i] + h[i - 1], h[i] + 2.0 * h[i - 1]);
-        (w1 + w2) / (w1 / secant[i - 1] + w2 / secant[i])
-    };
-    let end = |h0: f64, h1: f64, s0: f64, s1: f64| {
-        let slope = ((2.0 * h0 + h1) * s0 - h0 * s1) / (h0 + h1);
-        if slope * s0 <= 0.0 {
-            0.0
-        } else if s0 * s1 <= 0.0 && slope.abs() > 3.0 * s0.abs() {
-            3.0 * s0
-        } else {
-            slope
-        }
-    };
-    let mut slopes = vec![end(h[0], h[1], secant[0], secant[1])];
-    slopes.extend((1..n - 1).map(inner));
-    slopes.push(end(h[n - 2], h[n - 3], secant[n - 2], secant[n - 3]));
-    slopes
 }
 
 /// cos of an angle in degrees, exactly -1, 0 and 1 at 180, 90 and 0.
