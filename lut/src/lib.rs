@@ -15,6 +15,7 @@ mod medium;
 pub mod phase;
 mod planet;
 mod profile;
+pub mod quadrature;
 
 pub use bands::{BAND_COUNT, BAND_NAMES, Bands};
 pub use medium::{Constituent, Medium, MediumError};

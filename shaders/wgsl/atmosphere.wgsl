@@ -1,0 +1,123 @@
+#define_import_path welkin::atmosphere
+// What the air is made of, and what it does to light at an altitude.
+//
+// Legend
+//   extinction, scattering   c = a + b and b, 1/m, one component per spectral band
+//   density                  of a constituent, relative to the value its coefficients are given for
+//
+// Definitions (set by the scene, so that an absent profile leaves no instruction behind)
+//   CONSTITUENT_COUNT   all constituents; the array is sorted: those that scatter, then those that only absorb, and
+//                       within both by profile: exponential, tent, layer
+//   SCATTERING_EXPONENTIAL_END, SCATTERING_TENT_END, SCATTERER_COUNT,
+//   ABSORBING_EXPONENTIAL_END, ABSORBING_TENT_END   where each group ends in the array
+//   LOBE_COUNT          lobes of the most complex phase function
+
+const PI: f32 = 3.14159265358979;
+const CONSTITUENT_COUNT: u32 = #{CONSTITUENT_COUNT}u;
+const SCATTERING_EXPONENTIAL_END: u32 = #{SCATTERING_EXPONENTIAL_END}u;
+const SCATTERING_TENT_END: u32 = #{SCATTERING_TENT_END}u;
+const SCATTERER_COUNT: u32 = #{SCATTERER_COUNT}u;
+const ABSORBING_EXPONENTIAL_END: u32 = #{ABSORBING_EXPONENTIAL_END}u;
+const ABSORBING_TENT_END: u32 = #{ABSORBING_TENT_END}u;
+// WGSL has no empty arrays: vacuum keeps one slot, which no loop visits.
+const CONSTITUENT_SLOTS: u32 = max(CONSTITUENT_COUNT, 1u);
+const SCATTERER_SLOTS: u32 = max(SCATTERER_COUNT, 1u);
+const LOBE_COUNT: u32 = #{LOBE_COUNT}u;
+const MAX_LOBES: u32 = 2u;
+
+// scale * (1 + quadratic nu²) * (gap + slope (1 - nu))^(-exponent): Henyey-Greenstein, Rayleigh, Cornette-Shanks,
+// Draine and Schlick are all of this form. gap is (1 - g)² exactly, so that the peak survives f32.
+struct PhaseLobe {
+    scale_per_sr: f32,
+    quadratic: f32,
+    gap: f32,
+    slope: f32,
+    exponent: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32,
+}
+
+struct Constituent {
+    scattering_per_m: vec3<f32>,
+    // exponential: -1 / (scale height ln 2); tent: centre; layer: bottom
+    profile_a: f32,
+    extinction_per_m: vec3<f32>,
+    // exponential: unused; tent: 1 / half width; layer: top
+    profile_b: f32,
+    lobes: array<PhaseLobe, MAX_LOBES>,
+}
+
+struct Atmosphere {
+    ground_albedo: vec3<f32>,
+    radius_m: f32,
+    // Altitude of the shell above which there is vacuum.
+    top_m: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32,
+    constituents: array<Constituent, CONSTITUENT_SLOTS>,
+}
+
+@group(0) @binding(0) var<uniform> atmosphere: Atmosphere;
+
+fn exponential_density(constituent: u32, altitude_m: f32) -> f32 {
+    return exp2(altitude_m * atmosphere.constituents[constituent].profile_a);
+}
+
+fn tent_density(constituent: u32, altitude_m: f32) -> f32 {
+    let offset_m = altitude_m - atmosphere.constituents[constituent].profile_a;
+    return max(1.0 - abs(offset_m) * atmosphere.constituents[constituent].profile_b, 0.0);
+}
+
+fn layer_density(constituent: u32, altitude_m: f32) -> f32 {
+    let bottom_m = atmosphere.constituents[constituent].profile_a;
+    let top_m = atmosphere.constituents[constituent].profile_b;
+    return select(0.0, 1.0, altitude_m >= bottom_m && altitude_m <= top_m);
+}
+
+// Relative density of each constituent at an altitude.
+fn densities(altitude_m: f32) -> array<f32, CONSTITUENT_SLOTS> {
+    let h = max(altitude_m, 0.0);
+    var density: array<f32, CONSTITUENT_SLOTS>;
+    for (var i = 0u; i < SCATTERING_EXPONENTIAL_END; i++) {
+        density[i] = exponential_density(i, h);
+    }
+    for (var i = SCATTERING_EXPONENTIAL_END; i < SCATTERING_TENT_END; i++) {
+        density[i] = tent_density(i, h);
+    }
+    for (var i = SCATTERING_TENT_END; i < SCATTERER_COUNT; i++) {
+        density[i] = layer_density(i, h);
+    }
+    for (var i = SCATTERER_COUNT; i < ABSORBING_EXPONENTIAL_END; i++) {
+        density[i] = exponential_density(i, h);
+    }
+    for (var i = ABSORBING_EXPONENTIAL_END; i < ABSORBING_TENT_END; i++) {
+        density[i] = tent_density(i, h);
+    }
+    for (var i = ABSORBING_TENT_END; i < CONSTITUENT_COUNT; i++) {
+        density[i] = layer_density(i, h);
+    }
+    return density;
+}
+
+// c at an altitude, 1/m.
+fn extinction_at(altitude_m: f32) -> vec3<f32> {
+    let density = densities(altitude_m);
+    var extinction = vec3<f32>(0.0);
+    for (var i = 0u; i < CONSTITUENT_COUNT; i++) {
+        extinction += density[i] * atmosphere.constituents[i].extinction_per_m;
+    }
+    return extinction;
+}
+
+// P(nu) of a constituent, 1/sr; nu = 1 is forward.
+fn phase_per_sr(constituent: u32, nu: f32) -> f32 {
+    var phase = 0.0;
+    for (var i = 0u; i < LOBE_COUNT; i++) {
+        let lobe = atmosphere.constituents[constituent].lobes[i];
+        let base = lobe.gap + lobe.slope * (1.0 - nu);
+        phase += lobe.scale_per_sr * (1.0 + lobe.quadratic * nu * nu) * exp2(-lobe.exponent * log2(base));
+    }
+    return phase;
+}

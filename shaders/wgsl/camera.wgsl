@@ -1,0 +1,31 @@
+#define_import_path welkin::camera
+// From a pixel to the direction it looks in.
+
+struct Camera {
+    // Unit vectors in the local frame: east, north, up.
+    forward: vec3<f32>,
+    // tan of half the vertical field of view, times the picture's width over height.
+    half_width: f32,
+    right: vec3<f32>,
+    // tan of half the vertical field of view.
+    half_height: f32,
+    up: vec3<f32>,
+    padding: f32,
+    // Pixels.
+    size: vec2<f32>,
+    padding_0: f32,
+    padding_1: f32,
+}
+
+@group(0) @binding(13) var<uniform> camera: Camera;
+
+// Unit vector through the centre of a pixel; pixel (0, 0) is at the top left.
+fn view_direction(pixel: vec2<u32>) -> vec3<f32> {
+    let x = (2.0 * (vec2<f32>(pixel) + 0.5) / camera.size - 1.0) * vec2<f32>(camera.half_width, -camera.half_height);
+    return normalize(camera.forward + x.x * camera.right + x.y * camera.up);
+}
+
+// Angle between neighbouring pixels at the centre of the picture, rad.
+fn pixel_angle_rad() -> f32 {
+    return 2.0 * camera.half_height / camera.size.y;
+}

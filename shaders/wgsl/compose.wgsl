@@ -1,0 +1,87 @@
+// Pass: linear radiance of every pixel: the air, the ground behind it, and the discs of the lights.
+//
+// Definitions: MULTIPLE_SCATTERING; CAPTURE (also write transmittance and distance, for files and engines).
+
+#import welkin::atmosphere::{atmosphere, PI}
+#import welkin::camera::{camera, view_direction, pixel_angle_rad}
+#import welkin::march::view_ray
+#import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
+#import welkin::sky::{ground_radiance, sky_sample, SkyDirection}
+
+#ifdef MULTIPLE_SCATTERING
+@group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
+#endif
+@group(0) @binding(7) var sky_view_table: texture_2d_array<f32>;
+@group(0) @binding(8) var radiance_image: texture_storage_2d<rgba32float, write>;
+#ifdef CAPTURE
+@group(0) @binding(9) var transmittance_image: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(11) var distance_image: texture_storage_2d<r32float, write>;
+// What a file means by "the ray ends in space".
+const INFINITY_BITS: u32 = 0x7f800000u;
+#endif
+
+// The direction as the tables of one light know it.
+fn relative_to_light(view: vec3<f32>, light: u32) -> SkyDirection {
+    var direction: SkyDirection;
+    direction.zenith_rad = atan2(length(view.xy), view.z);
+    let turn_rad = abs(atan2(view.x, view.y) - observer.lights[light].azimuth_rad);
+    direction.azimuth_rad = min(turn_rad, 2.0 * PI - turn_rad);
+    direction.nu = clamp(dot(view, observer.lights[light].direction), -1.0, 1.0);
+    direction.below_horizon = direction.zenith_rad > observer.range.horizon_rad;
+    return direction;
+}
+
+// Radiance of a light's disc per unit irradiance, 1/sr, averaged over the pixel at its edge.
+fn disc_radiance(view: vec3<f32>, light: u32) -> vec3<f32> {
+    let disc = observer.lights[light];
+    if disc.angular_radius_rad <= 0.0 {
+        return vec3<f32>(0.0);
+    }
+    // The chord keeps the digits that the arc cosine of nu would lose.
+    let angle_rad = 2.0 * asin(0.5 * min(distance(view, disc.direction), 2.0));
+    let coverage = clamp((disc.angular_radius_rad - angle_rad) / pixel_angle_rad() + 0.5, 0.0, 1.0);
+    if coverage == 0.0 {
+        return vec3<f32>(0.0);
+    }
+    let x = min(angle_rad / disc.angular_radius_rad, 1.0);
+    let cosine = sqrt(max(1.0 - x * x, 1e-4));
+    let sine = sin(disc.angular_radius_rad);
+    // The mean of cosine^k over the disc is 2 / (2 + k).
+    let profile = 0.5 * (2.0 + disc.limb_exponent) * pow(vec3<f32>(cosine), disc.limb_exponent);
+    return coverage * profile / (PI * sine * sine);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
+    if any(pixel.xy >= textureDimensions(radiance_image)) {
+        return;
+    }
+    let view = view_direction(pixel.xy);
+    var radiance = vec3<f32>(0.0);
+    var transmittance = vec3<f32>(1.0);
+    for (var light = 0u; light < LIGHT_COUNT; light++) {
+        let direction = relative_to_light(view, light);
+        let sky = sky_sample(sky_view_table, light, direction);
+        transmittance = sky.transmittance;
+        var behind = vec3<f32>(0.0);
+        if direction.below_horizon {
+#ifdef MULTIPLE_SCATTERING
+            behind = ground_radiance(multiple_scattering_table, light, direction);
+#endif
+        } else {
+            behind = disc_radiance(view, light);
+        }
+        radiance += observer.lights[light].irradiance * (sky.radiance + sky.transmittance * behind);
+    }
+    textureStore(radiance_image, pixel.xy, vec4<f32>(radiance, 1.0));
+#ifdef CAPTURE
+    let direction = relative_to_light(view, 0u);
+    var distance_m = bitcast<f32>(INFINITY_BITS);
+    if direction.below_horizon {
+        let ray = view_ray(observer.altitude_m, cos(direction.zenith_rad), light_mu_s(0u), direction.nu, true);
+        distance_m = ray.start_m + ray.length_m;
+    }
+    textureStore(transmittance_image, pixel.xy, vec4<f32>(transmittance, 1.0));
+    textureStore(distance_image, pixel.xy, vec4<f32>(distance_m, 0.0, 0.0, 0.0));
+#endif
+}

@@ -1,0 +1,75 @@
+#define_import_path welkin::directions
+// The directions in which a radiance field is sampled at a table's texel, one invocation each, and its projection.
+//
+// Zenith angles are cut at the horizon, where radiance has a kink, and at the horizontal: Gauss-Legendre below the
+// horizon, in the band between both, and above. Azimuths are midpoints on half a turn: the field is symmetric.
+//
+// Definitions: BELOW_COUNT, BAND_COUNT, ABOVE_COUNT (cosines in each part), AZIMUTH_COUNT.
+
+#import welkin::march::GaussNode
+#import welkin::spherical_harmonics::{COEFFICIENT_COUNT, harmonics}
+
+const PI: f32 = 3.14159265358979;
+const BELOW_COUNT: u32 = #{BELOW_COUNT}u;
+const BAND_COUNT: u32 = #{BAND_COUNT}u;
+const ABOVE_COUNT: u32 = #{ABOVE_COUNT}u;
+const AZIMUTH_COUNT: u32 = #{AZIMUTH_COUNT}u;
+const COSINE_COUNT: u32 = BELOW_COUNT + BAND_COUNT + ABOVE_COUNT;
+const DIRECTION_COUNT: u32 = COSINE_COUNT * AZIMUTH_COUNT;
+
+// Gauss-Legendre nodes on [0, 1] for the three parts, one after the other.
+@group(0) @binding(2) var<uniform> cosine_nodes: array<GaussNode, COSINE_COUNT>;
+
+struct Direction {
+    mu: f32,
+    cos_phi: f32,
+    // What the direction stands for, both of its mirror images counted, sr.
+    solid_angle_sr: f32,
+    hits_ground: bool,
+}
+
+fn direction_of(index: u32, horizon_mu: f32) -> Direction {
+    let node = cosine_nodes[index / AZIMUTH_COUNT];
+    let x = node.abscissa;
+    var direction: Direction;
+    var d_mu = node.weight;
+    if index / AZIMUTH_COUNT < BELOW_COUNT {
+        direction.hits_ground = true;
+        direction.mu = horizon_mu - (1.0 + horizon_mu) * x * x;
+        d_mu *= 2.0 * x * (1.0 + horizon_mu);
+    } else if index / AZIMUTH_COUNT < BELOW_COUNT + BAND_COUNT {
+        direction.mu = horizon_mu * (1.0 - x);
+        d_mu *= -horizon_mu;
+    } else {
+        direction.mu = x * x;
+        d_mu *= 2.0 * x;
+    }
+    let phi_rad = (f32(index % AZIMUTH_COUNT) + 0.5) * PI / f32(AZIMUTH_COUNT);
+    direction.cos_phi = cos(phi_rad);
+    direction.solid_angle_sr = d_mu * 2.0 * PI / f32(AZIMUTH_COUNT);
+    return direction;
+}
+
+// Radiance seen along each direction, filled by one invocation each before a barrier.
+var<workgroup> field: array<vec3<f32>, DIRECTION_COUNT>;
+
+// I_lm of the field for one coefficient.
+fn project(coefficient: u32, horizon_mu: f32) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    for (var i = 0u; i < DIRECTION_COUNT; i++) {
+        let direction = direction_of(i, horizon_mu);
+        var y = harmonics(direction.mu, direction.cos_phi);
+        sum += direction.solid_angle_sr * y[coefficient] * field[i];
+    }
+    return sum;
+}
+
+// The field's irradiance on a horizontal plane from above.
+fn irradiance(horizon_mu: f32) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    for (var i = BELOW_COUNT * AZIMUTH_COUNT; i < DIRECTION_COUNT; i++) {
+        let direction = direction_of(i, horizon_mu);
+        sum += direction.solid_angle_sr * max(direction.mu, 0.0) * field[i];
+    }
+    return sum;
+}

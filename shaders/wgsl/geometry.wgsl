@@ -1,0 +1,81 @@
+#define_import_path welkin::geometry
+// Altitude-first geometry near a sphere; the same functions as the host's welkin_lut::geometry, in f32.
+//
+// Legend
+//   h, altitude_m   height above the ground, m
+//   r               radius_m + h, distance from the planet's centre, m
+//   mu              cosine of the zenith angle of a direction at the ray's start
+//   mu_s            the same for the direction to the light
+//   nu              cosine of the angle between view direction and direction to the light
+// r² - R² is never formed from r: it is h (2R + h), which keeps the metres near the ground.
+
+// Cosine of the zenith angle of the horizon: smaller mu hit the ground.
+fn horizon_mu(radius_m: f32, altitude_m: f32) -> f32 {
+    let h = max(altitude_m, 0.0);
+    return -sqrt(h * (2.0 * radius_m + h)) / (radius_m + h);
+}
+
+// Altitude after a distance along a ray, m.
+fn altitude_along(radius_m: f32, altitude_m: f32, mu: f32, distance_m: f32) -> f32 {
+    let r = radius_m + altitude_m;
+    let growth = distance_m * (distance_m + 2.0 * r * mu);
+    return altitude_m + growth / (sqrt(max(r * r + growth, 0.0)) + r);
+}
+
+// Distance to a shell that encloses the ray's start, m; zero when the start lies on or above it.
+fn distance_to_shell_from_below(radius_m: f32, altitude_m: f32, mu: f32, shell_m: f32) -> f32 {
+    let gap = (shell_m - altitude_m) * (2.0 * radius_m + shell_m + altitude_m);
+    if gap <= 0.0 {
+        return 0.0;
+    }
+    let b = (radius_m + altitude_m) * mu;
+    let root = sqrt(b * b + gap);
+    // Of the two equal forms, the one without cancellation.
+    return select(root - b, gap / (root + b), b > 0.0);
+}
+
+// Distance to the nearer intersection with a shell below the ray's start, m.
+//
+// The caller knows that the ray meets the shell: a discriminant that rounding made negative counts as grazing.
+fn distance_to_shell_from_above(radius_m: f32, altitude_m: f32, mu: f32, shell_m: f32) -> f32 {
+    let gap = (altitude_m - shell_m) * (2.0 * radius_m + shell_m + altitude_m);
+    let b = (radius_m + altitude_m) * mu;
+    let discriminant = max(b * b - gap, 0.0);
+    return gap / max(sqrt(discriminant) - b, 1e-20);
+}
+
+// The part of a ray inside the planet's shadow, as distances (start, end) in [0, length_m]; start >= end when lit.
+//
+// The shadow of a sphere in parallel light is a half-infinite cylinder, a convex set: a ray meets it in one interval,
+// whose ends solve |p_perp(t)|² = R² with p_perp the position's part normal to the light.
+fn shadow_interval_m(radius_m: f32, altitude_m: f32, mu: f32, mu_s: f32, nu: f32, length_m: f32) -> vec2<f32> {
+    let lit = vec2<f32>(1.0, 0.0);
+    let r = radius_m + altitude_m;
+    let sin2_nu = 1.0 - nu * nu;
+    let half_b = r * (mu - nu * mu_s);
+    // r² (1 - mu_s²) - R², without subtracting squares of radii.
+    let c = altitude_m * (2.0 * radius_m + altitude_m) - r * r * mu_s * mu_s;
+    if sin2_nu < 1e-12 {
+        // Along the light's axis: all of the ray is inside the cylinder or none.
+        return select(lit, vec2<f32>(0.0, length_m), c < 0.0 && mu_s < 0.0);
+    }
+    let discriminant = half_b * half_b - sin2_nu * c;
+    if discriminant <= 0.0 {
+        return lit;
+    }
+    let root = sqrt(discriminant);
+    // Stable quadratic roots: the smaller in magnitude through the product of both.
+    let q = -(half_b + select(-root, root, half_b >= 0.0));
+    let t_0 = q / sin2_nu;
+    let t_1 = select(c / q, t_0, q == 0.0);
+    var start = min(t_0, t_1);
+    var end = max(t_0, t_1);
+    // Only the side away from the light is dark: r mu_s + t nu < 0.
+    let crossing = -r * mu_s / select(nu, 1e-20, abs(nu) < 1e-20);
+    if nu > 0.0 {
+        end = min(end, crossing);
+    } else {
+        start = max(start, crossing);
+    }
+    return vec2<f32>(max(start, 0.0), min(end, length_m));
+}

@@ -1,0 +1,93 @@
+// Pass: light of one order more, from the field of the order before; spherical-harmonic source iteration.
+//
+// Adds what it finds to the sum of all orders. The last pass (definition CLOSE_SERIES) adds the rest of the series:
+// from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric.
+
+#import welkin::atmosphere::{atmosphere, densities, PI}
+#import welkin::directions::{direction_of, field, irradiance, project, DIRECTION_COUNT}
+#import welkin::geometry::horizon_mu
+#import welkin::mapping
+#import welkin::march::{
+    air_ray, ground_mu_s, leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, AirRay, LEG_COUNT, NODE_COUNT
+}
+#import welkin::spherical_harmonics::COEFFICIENT_COUNT
+#import welkin::tables::{diffuse_ground_irradiance, multiply_scattered_source, IRRADIANCE_LAYER}
+
+@group(0) @binding(6) var previous_order: texture_2d_array<f32>;
+@group(0) @binding(7) var previous_sum: texture_2d_array<f32>;
+@group(0) @binding(8) var order: texture_storage_2d_array<rgba32float, write>;
+@group(0) @binding(9) var sum: texture_storage_2d_array<rgba32float, write>;
+
+// Below this, light is dark; it keeps logarithms finite.
+const DARK: f32 = 1e-30;
+// The largest ratio between orders that the tail believes.
+const MAX_RATIO: f32 = 0.9;
+
+fn scattered_once_more(ray: AirRay, hits_ground: bool) -> vec3<f32> {
+    var tau = vec3<f32>(0.0);
+    var radiance = vec3<f32>(0.0);
+    for (var i = 0u; i < LEG_COUNT; i++) {
+        var leg = leg_of(ray, i);
+        if leg_is_empty(leg) {
+            continue;
+        }
+        for (var n = 0u; n < NODE_COUNT; n++) {
+            let node = leg_advance(&leg, ray, n, &tau);
+            let local = local_directions(ray, node);
+            let density = densities(node.altitude_m);
+            let source = multiply_scattered_source(previous_order, node.altitude_m, local, density);
+            radiance += node.weight_m * exp(-tau) * source;
+        }
+        leg_finish(&leg, ray, &tau);
+    }
+    if hits_ground {
+        let irradiance = diffuse_ground_irradiance(previous_order, ground_mu_s(ray));
+        radiance += exp(-tau) * atmosphere.ground_albedo / PI * irradiance;
+    }
+    return radiance;
+}
+
+// The whole series from this order on, relative to this order.
+fn remainder(this_order: vec3<f32>, order_before: vec3<f32>) -> vec3<f32> {
+#ifdef CLOSE_SERIES
+    return 1.0 / (1.0 - clamp(this_order / max(order_before, vec3<f32>(DARK)), vec3<f32>(0.0), vec3<f32>(MAX_RATIO)));
+#else
+    return vec3<f32>(1.0);
+#endif
+}
+
+// A positive quantity, kept as its logarithm: the mean radiance, or the irradiance.
+fn add_logarithmic(texel: vec2<u32>, layer: u32, value: vec3<f32>) -> vec3<f32> {
+    let before = exp(textureLoad(previous_order, texel, layer, 0).rgb);
+    let total = exp(textureLoad(previous_sum, texel, layer, 0).rgb) + value * remainder(value, before);
+    textureStore(order, texel, layer, vec4<f32>(log(value), 0.0));
+    textureStore(sum, texel, layer, vec4<f32>(log(total), 0.0));
+    return total;
+}
+
+@compute @workgroup_size(#{DIRECTION_COUNT})
+fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) index: u32) {
+    let size = vec2<f32>(textureDimensions(order));
+    let here = mapping::multiple_scattering_from_unit(mapping::unit_from_texel(texel.xy, size), atmosphere.top_m);
+    let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
+    let direction = direction_of(index, mu_h);
+    let mu_s = here.mu;
+    let sines = sqrt(max((1.0 - direction.mu * direction.mu) * (1.0 - mu_s * mu_s), 0.0));
+    let nu = clamp(direction.mu * mu_s + sines * direction.cos_phi, -1.0, 1.0);
+    let ray = air_ray(here.altitude_m, direction.mu, mu_s, nu, direction.hits_ground);
+    field[index] = scattered_once_more(ray, direction.hits_ground);
+    workgroupBarrier();
+    if index == 0u {
+        add_logarithmic(texel.xy, 0u, max(project(0u, mu_h), vec3<f32>(DARK)));
+        add_logarithmic(texel.xy, IRRADIANCE_LAYER, max(irradiance(mu_h), vec3<f32>(DARK)));
+    } else if index < COEFFICIENT_COUNT {
+        let mean = max(project(0u, mu_h), vec3<f32>(DARK));
+        let mean_before = exp(textureLoad(previous_order, texel.xy, 0, 0).rgb);
+        let mean_sum_before = exp(textureLoad(previous_sum, texel.xy, 0, 0).rgb);
+        let rest = remainder(mean, mean_before);
+        let coefficient = project(index, mu_h);
+        let total = mean_sum_before * textureLoad(previous_sum, texel.xy, index, 0).rgb + coefficient * rest;
+        textureStore(order, texel.xy, index, vec4<f32>(coefficient / mean, 0.0));
+        textureStore(sum, texel.xy, index, vec4<f32>(total / (mean_sum_before + mean * rest), 0.0));
+    }
+}

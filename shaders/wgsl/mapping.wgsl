@@ -1,0 +1,85 @@
+#define_import_path welkin::mapping
+// Where a physical parameter lies in a table: the same mappings as the host's welkin_lut::mapping.
+//
+// A table's coordinate in [0, 1] is inset so that 0 and 1 fall on the centres of the first and last texel.
+
+#import welkin::geometry::horizon_mu
+
+const PI: f32 = 3.14159265358979;
+
+// From [0, 1] to a texture coordinate.
+fn inset(x: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
+    return (x * (size - 1.0) + 0.5) / size;
+}
+
+// From a texel's index to [0, 1].
+fn unit_from_texel(texel: vec2<u32>, size: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(texel) / max(size - 1.0, vec2<f32>(1.0));
+}
+
+// --- Optical depth to the top: x = sqrt((mu - mu_h) / (1 - mu_h)), y = sqrt(h / top).
+
+struct AltitudeCosine {
+    altitude_m: f32,
+    mu: f32,
+}
+
+fn optical_depth_from_unit(unit: vec2<f32>, radius_m: f32, top_m: f32) -> AltitudeCosine {
+    let altitude_m = top_m * unit.y * unit.y;
+    let mu_h = horizon_mu(radius_m, altitude_m);
+    return AltitudeCosine(altitude_m, mu_h + (1.0 - mu_h) * unit.x * unit.x);
+}
+
+fn optical_depth_to_unit(altitude_m: f32, mu: f32, radius_m: f32, top_m: f32) -> vec2<f32> {
+    let mu_h = horizon_mu(radius_m, altitude_m);
+    let x2 = (mu - mu_h) / (1.0 - mu_h);
+    return sqrt(clamp(vec2<f32>(x2, altitude_m / top_m), vec2<f32>(0.0), vec2<f32>(1.0)));
+}
+
+// --- Multiple scattering: x = asinh(k mu_s) from its value at the lowest sun to that at the zenith, y = sqrt(h / top).
+
+// Slope of the warp at the horizon: half of the texels lie within 9 degrees of it.
+const SUN_WARP: f32 = 17.0;
+// sin(-20 degrees): a sun lower than that lights nothing that the table keeps.
+const LOWEST_MU_S: f32 = -0.3420201433;
+
+fn multiple_scattering_from_unit(unit: vec2<f32>, top_m: f32) -> AltitudeCosine {
+    let low = asinh(SUN_WARP * LOWEST_MU_S);
+    let high = asinh(SUN_WARP);
+    let mu_s = sinh(mix(low, high, unit.x)) / SUN_WARP;
+    return AltitudeCosine(top_m * unit.y * unit.y, clamp(mu_s, LOWEST_MU_S, 1.0));
+}
+
+fn multiple_scattering_to_unit(altitude_m: f32, mu_s: f32, top_m: f32) -> vec2<f32> {
+    let low = asinh(SUN_WARP * LOWEST_MU_S);
+    let high = asinh(SUN_WARP);
+    let x = (asinh(SUN_WARP * mu_s) - low) / (high - low);
+    return clamp(vec2<f32>(x, sqrt(max(altitude_m, 0.0) / top_m)), vec2<f32>(0.0), vec2<f32>(1.0));
+}
+
+// --- Sky view: the two halves of the view sphere, above and below the horizon, each a table of its own, so that no
+// filter reaches across the horizon. x = azimuth from the light / pi, y = sqrt(angle from the horizon / its range).
+
+// Zenith angles that bound the halves, rad.
+struct SkyViewRange {
+    horizon_rad: f32,
+    // Where the sky half ends: the zenith, or the limb of the air seen from outside.
+    sky_end_rad: f32,
+}
+
+struct ZenithAzimuth {
+    zenith_rad: f32,
+    azimuth_rad: f32,
+}
+
+fn sky_view_from_unit(unit: vec2<f32>, below_horizon: bool, range: SkyViewRange) -> ZenithAzimuth {
+    let end_rad = select(range.sky_end_rad, PI, below_horizon);
+    let zenith_rad = range.horizon_rad + (end_rad - range.horizon_rad) * unit.y * unit.y;
+    return ZenithAzimuth(zenith_rad, PI * unit.x);
+}
+
+fn sky_view_to_unit(zenith_rad: f32, azimuth_rad: f32, below_horizon: bool, range: SkyViewRange) -> vec2<f32> {
+    let end_rad = select(range.sky_end_rad, PI, below_horizon);
+    let y2 = (zenith_rad - range.horizon_rad) / (end_rad - range.horizon_rad);
+    return vec2<f32>(clamp(azimuth_rad / PI, 0.0, 1.0), sqrt(clamp(y2, 0.0, 1.0)));
+}

@@ -1,0 +1,220 @@
+#define_import_path welkin::march
+// The quadrature along a view ray, shared by every pass that integrates through the air.
+//
+// A ray is cut where its integrand has a kink: at its tangent point and where it crosses the planet's shadow. Each of
+// the at most four legs is integrated by Gauss-Legendre in v, where distance grows with v² from the leg's low end, so
+// that nodes crowd where the air is dense. Optical depth between nodes is Simpson's rule in v, which reuses the
+// extinction at both nodes. Measured in docs/accuracy.md.
+//
+//   for (var i = 0u; i < LEG_COUNT; i++) {
+//       var leg = leg_of(ray, i);
+//       if leg_is_empty(leg) { continue; }
+//       for (var n = 0u; n < NODE_COUNT; n++) {
+//           let node = leg_advance(&leg, ray, n, &optical_depth);
+//           ...
+//       }
+//       leg_finish(&leg, ray, &optical_depth);
+//   }
+//
+// Definitions: NODE_COUNT, Gauss-Legendre nodes per leg.
+
+#import welkin::atmosphere::{atmosphere, extinction_at}
+#import welkin::geometry
+
+const NODE_COUNT: u32 = #{NODE_COUNT}u;
+const LEG_COUNT: u32 = 4u;
+
+struct GaussNode {
+    // In ]0, 1[.
+    abscissa: f32,
+    weight: f32,
+    padding_0: f32,
+    padding_1: f32,
+}
+
+// Gauss-Legendre nodes on [0, 1], ascending.
+@group(0) @binding(1) var<uniform> gauss_nodes: array<GaussNode, NODE_COUNT>;
+
+// A ray's part inside the air.
+struct AirRay {
+    // Distance from the observer to the start; 0 unless the observer stands in space.
+    start_m: f32,
+    // At the start: altitude, cosines of the zenith angles of ray and light, and of the angle between the two.
+    altitude_m: f32,
+    mu: f32,
+    mu_s: f32,
+    nu: f32,
+    length_m: f32,
+    tangent_m: f32,
+    // Where the planet hides the light; start >= end when nowhere.
+    shadow_m: vec2<f32>,
+    // Ends of the legs in ascending order.
+    leg_ends_m: vec4<f32>,
+}
+
+struct Leg {
+    start_m: f32,
+    length_m: f32,
+    descending: bool,
+    // Whether the planet hides the light from this leg.
+    dark: bool,
+    // Where the quadrature stands: v, and extinction times v there.
+    v: f32,
+    weighted_extinction_per_m: vec3<f32>,
+}
+
+struct Node {
+    distance_m: f32,
+    altitude_m: f32,
+    // Quadrature weight: the length of ray that this node stands for.
+    weight_m: f32,
+}
+
+// The ray from a point in the air until it leaves the air or meets the ground, whichever the caller knows it does.
+// Cut at its tangent point only: enough for light that has no sharp shadow.
+fn air_ray(altitude_m: f32, mu: f32, mu_s: f32, nu: f32, hits_ground: bool) -> AirRay {
+    let radius_m = atmosphere.radius_m;
+    var ray: AirRay;
+    ray.altitude_m = altitude_m;
+    ray.mu = mu;
+    ray.mu_s = mu_s;
+    ray.nu = nu;
+    if hits_ground {
+        ray.length_m = geometry::distance_to_shell_from_above(radius_m, altitude_m, mu, 0.0);
+    } else {
+        ray.length_m = geometry::distance_to_shell_from_below(radius_m, altitude_m, mu, atmosphere.top_m);
+    }
+    ray.tangent_m = -(radius_m + altitude_m) * mu;
+    ray.shadow_m = vec2<f32>(1.0, 0.0);
+    ray.leg_ends_m = sorted_leg_ends_m(ray);
+    return ray;
+}
+
+// The same ray, cut also where it enters and leaves the planet's shadow.
+fn cut_at_shadow(ray: AirRay) -> AirRay {
+    var cut = ray;
+    let radius_m = atmosphere.radius_m;
+    cut.shadow_m = geometry::shadow_interval_m(radius_m, ray.altitude_m, ray.mu, ray.mu_s, ray.nu, ray.length_m);
+    cut.leg_ends_m = sorted_leg_ends_m(cut);
+    return cut;
+}
+
+// A view ray, whose observer may stand in space: then it starts where it enters the air, if it does.
+fn view_ray(altitude_m: f32, mu: f32, mu_s: f32, nu: f32, hits_ground: bool) -> AirRay {
+    let top_m = atmosphere.top_m;
+    if altitude_m <= top_m {
+        return air_ray(altitude_m, mu, mu_s, nu, hits_ground);
+    }
+    let r = atmosphere.radius_m + altitude_m;
+    let r_top = atmosphere.radius_m + top_m;
+    let impact_m = r * sqrt(max(1.0 - mu * mu, 0.0));
+    if mu >= 0.0 || impact_m >= r_top {
+        var missed: AirRay;
+        missed.mu = 1.0;
+        missed.shadow_m = vec2<f32>(1.0, 0.0);
+        return missed;
+    }
+    let entry_m = geometry::distance_to_shell_from_above(atmosphere.radius_m, altitude_m, mu, top_m);
+    let mu_entry = -sqrt(max(1.0 - (impact_m / r_top) * (impact_m / r_top), 0.0));
+    let mu_s_entry = clamp((r * mu_s + entry_m * nu) / r_top, -1.0, 1.0);
+    var ray = air_ray(top_m, mu_entry, mu_s_entry, nu, hits_ground);
+    ray.start_m = entry_m;
+    return ray;
+}
+
+fn sorted_leg_ends_m(ray: AirRay) -> vec4<f32> {
+    let in_shadow = ray.shadow_m.x < ray.shadow_m.y;
+    let shadow_m = select(vec2<f32>(0.0), ray.shadow_m, in_shadow);
+    let a = clamp(ray.tangent_m, 0.0, ray.length_m);
+    let low = min(a, shadow_m.x);
+    let high = max(a, shadow_m.y);
+    // shadow_m is ordered, so the middle one is what min and max leave over.
+    let middle = a + shadow_m.x + shadow_m.y - low - high;
+    return vec4<f32>(low, middle, high, ray.length_m);
+}
+
+fn leg_of(ray: AirRay, index: u32) -> Leg {
+    let ends_m = array<f32, 5>(0.0, ray.leg_ends_m.x, ray.leg_ends_m.y, ray.leg_ends_m.z, ray.leg_ends_m.w);
+    var leg: Leg;
+    leg.start_m = ends_m[index];
+    leg.length_m = ends_m[index + 1u] - leg.start_m;
+    let middle_m = leg.start_m + 0.5 * leg.length_m;
+    leg.descending = middle_m < ray.tangent_m;
+    leg.dark = middle_m > ray.shadow_m.x && middle_m < ray.shadow_m.y;
+    leg.v = select(0.0, 1.0, leg.descending);
+    // Ascending legs start at v = 0, where the weight vanishes.
+    if leg.descending {
+        leg.weighted_extinction_per_m = extinction_at(altitude_at(ray, leg.start_m));
+    }
+    return leg;
+}
+
+fn leg_is_empty(leg: Leg) -> bool {
+    return leg.length_m <= 0.0;
+}
+
+fn altitude_at(ray: AirRay, distance_m: f32) -> f32 {
+    return max(geometry::altitude_along(atmosphere.radius_m, ray.altitude_m, ray.mu, distance_m), 0.0);
+}
+
+// Distance from the ray's start at a leg's v: v = 0 is the leg's low end.
+fn leg_distance_m(leg: Leg, v: f32) -> f32 {
+    let along_m = leg.length_m * v * v;
+    return leg.start_m + select(along_m, leg.length_m - along_m, leg.descending);
+}
+
+// Moves to v and adds the optical depth of the way there.
+fn leg_move(leg: ptr<function, Leg>, ray: AirRay, v: f32, altitude_m: f32, optical_depth: ptr<function, vec3<f32>>) {
+    let v_middle = 0.5 * (leg.v + v);
+    let middle = extinction_at(altitude_at(ray, leg_distance_m(*leg, v_middle))) * v_middle;
+    let end = extinction_at(altitude_m) * v;
+    // dt = 2 length v dv, by Simpson's rule.
+    let step = 2.0 * leg.length_m * abs(v - leg.v) / 6.0;
+    *optical_depth += step * (leg.weighted_extinction_per_m + 4.0 * middle + end);
+    leg.v = v;
+    leg.weighted_extinction_per_m = end;
+}
+
+// Moves to the leg's next node; optical_depth becomes that from the ray's start to the node.
+fn leg_advance(leg: ptr<function, Leg>, ray: AirRay, index: u32, optical_depth: ptr<function, vec3<f32>>) -> Node {
+    let gauss = gauss_nodes[index];
+    // The nodes are symmetric about 1/2, so a leg walked from its high end only mirrors them.
+    let v = select(gauss.abscissa, 1.0 - gauss.abscissa, leg.descending);
+    var node: Node;
+    node.distance_m = leg_distance_m(*leg, v);
+    node.altitude_m = altitude_at(ray, node.distance_m);
+    node.weight_m = 2.0 * leg.length_m * v * gauss.weight;
+    leg_move(leg, ray, v, node.altitude_m, optical_depth);
+    return node;
+}
+
+// Moves to the end of the leg; optical_depth becomes that from the ray's start to there.
+fn leg_finish(leg: ptr<function, Leg>, ray: AirRay, optical_depth: ptr<function, vec3<f32>>) {
+    let v = select(1.0, 0.0, leg.descending);
+    leg_move(leg, ray, v, altitude_at(ray, leg_distance_m(*leg, v)), optical_depth);
+}
+
+// Directions at a node, in the frame of its own vertical, whose azimuth 0 points to the light.
+struct LocalDirections {
+    mu: f32,
+    mu_s: f32,
+    cos_phi: f32,
+}
+
+fn local_directions(ray: AirRay, node: Node) -> LocalDirections {
+    let r_start = atmosphere.radius_m + ray.altitude_m;
+    let r = atmosphere.radius_m + node.altitude_m;
+    var local: LocalDirections;
+    local.mu = clamp((r_start * ray.mu + node.distance_m) / r, -1.0, 1.0);
+    local.mu_s = clamp((r_start * ray.mu_s + node.distance_m * ray.nu) / r, -1.0, 1.0);
+    let sines = sqrt((1.0 - local.mu * local.mu) * (1.0 - local.mu_s * local.mu_s));
+    // Where an azimuth is undefined every term that it enters has a factor of zero.
+    local.cos_phi = clamp((ray.nu - local.mu * local.mu_s) / max(sines, 1e-6), -1.0, 1.0);
+    return local;
+}
+
+// Cosine of the light's zenith angle where a ray meets the ground.
+fn ground_mu_s(ray: AirRay) -> f32 {
+    let r_start = atmosphere.radius_m + ray.altitude_m;
+    return clamp((r_start * ray.mu_s + ray.length_m * ray.nu) / atmosphere.radius_m, -1.0, 1.0);
+}

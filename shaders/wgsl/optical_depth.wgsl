@@ -1,0 +1,33 @@
+// Pass: optical depth from every altitude along every direction above the horizon to the top of the atmosphere.
+//
+// Optical depth rather than transmittance: it survives half float where transmittance underflows, it interpolates
+// better, and its exponential is free where it joins the view ray's in one exp.
+
+#import welkin::atmosphere::atmosphere
+#import welkin::mapping
+#import welkin::march::{air_ray, leg_advance, leg_finish, leg_is_empty, leg_of, LEG_COUNT, NODE_COUNT}
+
+@group(0) @binding(6) var optical_depth: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
+    let size = textureDimensions(optical_depth);
+    if any(texel.xy >= size) {
+        return;
+    }
+    let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(size));
+    let start = mapping::optical_depth_from_unit(unit, atmosphere.radius_m, atmosphere.top_m);
+    let ray = air_ray(start.altitude_m, start.mu, 1.0, start.mu, false);
+    var tau = vec3<f32>(0.0);
+    for (var i = 0u; i < LEG_COUNT; i++) {
+        var leg = leg_of(ray, i);
+        if leg_is_empty(leg) {
+            continue;
+        }
+        for (var n = 0u; n < NODE_COUNT; n++) {
+            leg_advance(&leg, ray, n, &tau);
+        }
+        leg_finish(&leg, ray, &tau);
+    }
+    textureStore(optical_depth, texel.xy, vec4<f32>(tau, 0.0));
+}

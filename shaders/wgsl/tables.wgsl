@@ -1,0 +1,75 @@
+#define_import_path welkin::tables
+// Reading the tables that belong to a medium: optical depth to the top, and multiply scattered light.
+//
+// Definitions: SCATTERER_COUNT, DEGREE_COUNT (see atmosphere, spherical_harmonics).
+
+#import welkin::atmosphere::{atmosphere, CONSTITUENT_SLOTS, SCATTERER_COUNT}
+#import welkin::mapping
+#import welkin::march::LocalDirections
+#import welkin::spherical_harmonics::{COEFFICIENT_COUNT, DEGREE_COUNT, Harmonics, degree_of, harmonics}
+
+@group(0) @binding(3) var table_sampler: sampler;
+// Optical depth from an altitude along a direction to the top, one component per band.
+@group(0) @binding(4) var optical_depth_table: texture_2d<f32>;
+
+// chi_l of each scatterer: 2 pi int p P_l dc, row by row.
+@group(0) @binding(5) var<storage, read> legendre_moments: array<f32>;
+
+// tau from a point to the top along a direction above the horizon.
+fn optical_depth_to_top(altitude_m: f32, mu: f32) -> vec3<f32> {
+    let unit = mapping::optical_depth_to_unit(altitude_m, mu, atmosphere.radius_m, atmosphere.top_m);
+    let uv = mapping::inset(unit, vec2<f32>(textureDimensions(optical_depth_table)));
+    return textureSampleLevel(optical_depth_table, table_sampler, uv, 0.0).rgb;
+}
+
+// Tables of multiply scattered light hold, for unit irradiance of the light and at each (altitude, mu_s), the
+// spherical-harmonic coefficients of the radiance seen looking along a direction: layer 0 is ln I_00, layers (l, m)
+// are I_lm / I_00, and the last is ln of the diffuse irradiance on a horizontal plane. The logarithm makes
+// interpolation exact where light falls exponentially: with altitude and into the night.
+const IRRADIANCE_LAYER: u32 = COEFFICIENT_COUNT;
+
+// Radiance sent into the view direction per metre, 1/m per unit irradiance: sum_c b_c int p_c I dw'.
+fn multiply_scattered_source(
+    table: texture_2d_array<f32>,
+    altitude_m: f32,
+    local: LocalDirections,
+    density: array<f32, CONSTITUENT_SLOTS>,
+) -> vec3<f32> {
+    let unit = mapping::multiple_scattering_to_unit(altitude_m, local.mu_s, atmosphere.top_m);
+    let uv = mapping::inset(unit, vec2<f32>(textureDimensions(table)));
+    var y = harmonics(local.mu, local.cos_phi);
+    var scattering = scattering_by_degree(density);
+    var relative = scattering[0] * y[0];
+    for (var k = 1u; k < COEFFICIENT_COUNT; k++) {
+        let coefficient = textureSampleLevel(table, table_sampler, uv, k, 0.0).rgb;
+        relative += scattering[degree_of(k)] * y[k] * coefficient;
+    }
+    return max(relative, vec3<f32>(0.0)) * exp(textureSampleLevel(table, table_sampler, uv, 0, 0.0).rgb);
+}
+
+// sum_c b_c chi_l,c at the given densities, 1/m, for each degree l.
+fn scattering_by_degree(density: array<f32, CONSTITUENT_SLOTS>) -> array<vec3<f32>, DEGREE_COUNT> {
+    var scattering: array<vec3<f32>, DEGREE_COUNT>;
+    for (var i = 0u; i < SCATTERER_COUNT; i++) {
+        let b = density[i] * atmosphere.constituents[i].scattering_per_m;
+        for (var l = 0u; l < DEGREE_COUNT; l++) {
+            scattering[l] += legendre_moments[i * DEGREE_COUNT + l] * b;
+        }
+    }
+    return scattering;
+}
+
+// Diffuse irradiance on horizontal ground per unit irradiance of the light.
+fn diffuse_ground_irradiance(table: texture_2d_array<f32>, mu_s: f32) -> vec3<f32> {
+    let unit = mapping::multiple_scattering_to_unit(0.0, mu_s, atmosphere.top_m);
+    let uv = mapping::inset(unit, vec2<f32>(textureDimensions(table)));
+    return exp(textureSampleLevel(table, table_sampler, uv, IRRADIANCE_LAYER, 0.0).rgb);
+}
+
+// Direct irradiance on horizontal ground per unit irradiance of the light.
+fn direct_ground_irradiance(mu_s: f32) -> vec3<f32> {
+    if mu_s <= 0.0 {
+        return vec3<f32>(0.0);
+    }
+    return mu_s * exp(-optical_depth_to_top(0.0, mu_s));
+}
