@@ -1,5 +1,10 @@
 //! Skies, clouds and fog in real time on Vulkan, with a stated error.
 
 pub mod frame;
+pub mod gpu;
+pub mod output;
+pub mod passes;
+pub mod plan;
 pub mod probe;
+pub mod renderer;
 pub mod scene;

@@ -8,3 +8,6 @@ pub const BAND_NAMES: [&str; BAND_COUNT] = ["r", "g", "b"];
 
 /// One value for each spectral band, by default at 680, 550 and 440 nm.
 pub type Bands = [f64; BAND_COUNT];
+
+/// Wavelength in vacuum that each band stands for, nm (as in Hillaire 2020 and Bruneton 2017).
+pub const BAND_WAVELENGTHS_NM: Bands = [680.0, 550.0, 440.0];

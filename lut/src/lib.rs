@@ -17,7 +17,7 @@ mod planet;
 mod profile;
 pub mod quadrature;
 
-pub use bands::{BAND_COUNT, BAND_NAMES, Bands};
+pub use bands::{BAND_COUNT, BAND_NAMES, BAND_WAVELENGTHS_NM, Bands};
 pub use medium::{Constituent, Medium, MediumError};
 pub use phase::{DropletFit, PhaseError, PhaseFunction, TabulatedPhase};
 pub use planet::{Planet, PlanetError};

@@ -13,7 +13,7 @@ use crate::{Binding, ShaderError, Sources, StructLayout, compose, reflect};
 pub type Definitions = BTreeMap<String, Definition>;
 
 /// A definition's value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Definition {
     /// `true` satisfies `#ifdef`; `false` is the same as no definition.
     Bool(bool),

@@ -33,9 +33,9 @@ struct PhaseLobe {
     gap: f32,
     slope: f32,
     exponent: f32,
-    padding_0: f32,
-    padding_1: f32,
-    padding_2: f32,
+    padding_a: f32,
+    padding_b: f32,
+    padding_c: f32,
 }
 
 struct Constituent {
@@ -53,9 +53,9 @@ struct Atmosphere {
     radius_m: f32,
     // Altitude of the shell above which there is vacuum.
     top_m: f32,
-    padding_0: f32,
-    padding_1: f32,
-    padding_2: f32,
+    padding_a: f32,
+    padding_b: f32,
+    padding_c: f32,
     constituents: array<Constituent, CONSTITUENT_SLOTS>,
 }
 

@@ -13,8 +13,8 @@ struct Camera {
     padding: f32,
     // Pixels.
     size: vec2<f32>,
-    padding_0: f32,
-    padding_1: f32,
+    padding_a: f32,
+    padding_b: f32,
 }
 
 @group(0) @binding(13) var<uniform> camera: Camera;

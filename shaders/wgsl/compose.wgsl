@@ -1,6 +1,6 @@
 // Pass: linear radiance of every pixel: the air, the ground behind it, and the discs of the lights.
 //
-// Definitions: MULTIPLE_SCATTERING; CAPTURE (also write transmittance and distance, for files and engines).
+// Definitions: CAPTURE (also write transmittance and distance, for files and engines).
 
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::camera::{camera, view_direction, pixel_angle_rad}
@@ -8,10 +8,6 @@
 #import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
 #import welkin::sky::{ground_radiance, sky_sample, SkyDirection}
 
-#ifdef MULTIPLE_SCATTERING
-@group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
-#endif
-@group(0) @binding(7) var sky_view_table: texture_2d_array<f32>;
 @group(0) @binding(8) var radiance_image: texture_storage_2d<rgba32float, write>;
 #ifdef CAPTURE
 @group(0) @binding(9) var transmittance_image: texture_storage_2d<rgba32float, write>;
@@ -27,7 +23,7 @@ fn relative_to_light(view: vec3<f32>, light: u32) -> SkyDirection {
     let turn_rad = abs(atan2(view.x, view.y) - observer.lights[light].azimuth_rad);
     direction.azimuth_rad = min(turn_rad, 2.0 * PI - turn_rad);
     direction.nu = clamp(dot(view, observer.lights[light].direction), -1.0, 1.0);
-    direction.below_horizon = direction.zenith_rad > observer.range.horizon_rad;
+    direction.below_horizon = direction.zenith_rad > observer.horizon_rad;
     return direction;
 }
 
@@ -61,13 +57,11 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
     var transmittance = vec3<f32>(1.0);
     for (var light = 0u; light < LIGHT_COUNT; light++) {
         let direction = relative_to_light(view, light);
-        let sky = sky_sample(sky_view_table, light, direction);
+        let sky = sky_sample(light, direction);
         transmittance = sky.transmittance;
         var behind = vec3<f32>(0.0);
         if direction.below_horizon {
-#ifdef MULTIPLE_SCATTERING
-            behind = ground_radiance(multiple_scattering_table, light, direction);
-#endif
+            behind = ground_radiance(light, direction);
         } else {
             behind = disc_radiance(view, light);
         }

@@ -13,7 +13,7 @@
 #import welkin::spherical_harmonics::COEFFICIENT_COUNT
 #import welkin::tables::{direct_ground_irradiance, optical_depth_to_top, IRRADIANCE_LAYER}
 
-@group(0) @binding(6) var order: texture_storage_2d_array<rgba32float, write>;
+@group(0) @binding(6) var first_order: texture_storage_2d_array<rgba32float, write>;
 
 // Below this, light is dark; it keeps logarithms finite.
 const DARK: f32 = 1e-30;
@@ -49,7 +49,7 @@ fn single_scattering(ray: AirRay, hits_ground: bool) -> vec3<f32> {
 
 @compute @workgroup_size(#{DIRECTION_COUNT})
 fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) index: u32) {
-    let size = vec2<f32>(textureDimensions(order));
+    let size = vec2<f32>(textureDimensions(first_order));
     let here = mapping::multiple_scattering_from_unit(mapping::unit_from_texel(texel.xy, size), atmosphere.top_m);
     let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
     let direction = direction_of(index, mu_h);
@@ -61,10 +61,10 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
     workgroupBarrier();
     if index == 0u {
         let mean = max(project(0u, mu_h), vec3<f32>(DARK));
-        textureStore(order, texel.xy, 0, vec4<f32>(log(mean), 0.0));
-        textureStore(order, texel.xy, IRRADIANCE_LAYER, vec4<f32>(log(max(irradiance(mu_h), vec3<f32>(DARK))), 0.0));
+        textureStore(first_order, texel.xy, 0, vec4<f32>(log(mean), 0.0));
+        textureStore(first_order, texel.xy, IRRADIANCE_LAYER, vec4<f32>(log(max(irradiance(mu_h), vec3<f32>(DARK))), 0.0));
     } else if index < COEFFICIENT_COUNT {
         let mean = max(project(0u, mu_h), vec3<f32>(DARK));
-        textureStore(order, texel.xy, index, vec4<f32>(project(index, mu_h) / mean, 0.0));
+        textureStore(first_order, texel.xy, index, vec4<f32>(project(index, mu_h) / mean, 0.0));
     }
 }

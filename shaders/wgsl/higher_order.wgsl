@@ -15,7 +15,9 @@
 
 @group(0) @binding(6) var previous_order: texture_2d_array<f32>;
 @group(0) @binding(7) var previous_sum: texture_2d_array<f32>;
+#ifndef CLOSE_SERIES
 @group(0) @binding(8) var order: texture_storage_2d_array<rgba32float, write>;
+#endif
 @group(0) @binding(9) var sum: texture_storage_2d_array<rgba32float, write>;
 
 // Below this, light is dark; it keeps logarithms finite.
@@ -57,17 +59,18 @@ fn remainder(this_order: vec3<f32>, order_before: vec3<f32>) -> vec3<f32> {
 }
 
 // A positive quantity, kept as its logarithm: the mean radiance, or the irradiance.
-fn add_logarithmic(texel: vec2<u32>, layer: u32, value: vec3<f32>) -> vec3<f32> {
+fn add_logarithmic(texel: vec2<u32>, layer: u32, value: vec3<f32>) {
     let before = exp(textureLoad(previous_order, texel, layer, 0).rgb);
     let total = exp(textureLoad(previous_sum, texel, layer, 0).rgb) + value * remainder(value, before);
+#ifndef CLOSE_SERIES
     textureStore(order, texel, layer, vec4<f32>(log(value), 0.0));
+#endif
     textureStore(sum, texel, layer, vec4<f32>(log(total), 0.0));
-    return total;
 }
 
 @compute @workgroup_size(#{DIRECTION_COUNT})
 fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) index: u32) {
-    let size = vec2<f32>(textureDimensions(order));
+    let size = vec2<f32>(textureDimensions(sum));
     let here = mapping::multiple_scattering_from_unit(mapping::unit_from_texel(texel.xy, size), atmosphere.top_m);
     let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
     let direction = direction_of(index, mu_h);
@@ -87,7 +90,9 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
         let rest = remainder(mean, mean_before);
         let coefficient = project(index, mu_h);
         let total = mean_sum_before * textureLoad(previous_sum, texel.xy, index, 0).rgb + coefficient * rest;
+#ifndef CLOSE_SERIES
         textureStore(order, texel.xy, index, vec4<f32>(coefficient / mean, 0.0));
+#endif
         textureStore(sum, texel.xy, index, vec4<f32>(total / (mean_sum_before + mean * rest), 0.0));
     }
 }

@@ -28,8 +28,8 @@ struct GaussNode {
     // In ]0, 1[.
     abscissa: f32,
     weight: f32,
-    padding_0: f32,
-    padding_1: f32,
+    padding_a: f32,
+    padding_b: f32,
 }
 
 // Gauss-Legendre nodes on [0, 1], ascending.

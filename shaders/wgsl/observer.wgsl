@@ -23,8 +23,10 @@ struct DirectionalLight {
 
 struct Observer {
     altitude_m: f32,
+    // Zenith angles of the horizon and of the sky's end, see mapping::SkyViewRange.
+    horizon_rad: f32,
+    sky_end_rad: f32,
     padding: f32,
-    range: SkyViewRange,
     lights: array<DirectionalLight, LIGHT_COUNT>,
 }
 
@@ -33,4 +35,8 @@ struct Observer {
 // Cosine of a light's zenith angle at the observer.
 fn light_mu_s(light: u32) -> f32 {
     return observer.lights[light].direction.z;
+}
+
+fn sky_view_range() -> SkyViewRange {
+    return SkyViewRange(observer.horizon_rad, observer.sky_end_rad);
 }

@@ -7,11 +7,11 @@
 #import welkin::mapping
 #import welkin::march::{air_ray, leg_advance, leg_finish, leg_is_empty, leg_of, LEG_COUNT, NODE_COUNT}
 
-@group(0) @binding(6) var optical_depth: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(6) var optical_depth_table: texture_storage_2d<rgba32float, write>;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
-    let size = textureDimensions(optical_depth);
+    let size = textureDimensions(optical_depth_table);
     if any(texel.xy >= size) {
         return;
     }
@@ -29,5 +29,5 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
         }
         leg_finish(&leg, ray, &tau);
     }
-    textureStore(optical_depth, texel.xy, vec4<f32>(tau, 0.0));
+    textureStore(optical_depth_table, texel.xy, vec4<f32>(tau, 0.0));
 }

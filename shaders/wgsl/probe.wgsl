@@ -1,14 +1,7 @@
 // Pass: radiance and transmittance along single rays, read from the very tables that a picture is made of.
-//
-// Definitions: MULTIPLE_SCATTERING (all orders and the ground's light; else single scattering only).
 
 #import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
 #import welkin::sky::{ground_radiance, sky_sample, SkyDirection}
-
-#ifdef MULTIPLE_SCATTERING
-@group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
-#endif
-@group(0) @binding(7) var sky_view_table: texture_2d_array<f32>;
 
 struct ProbeRay {
     zenith_rad: f32,
@@ -35,12 +28,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let sines = sin(ray.zenith_rad) * sqrt(max(1.0 - mu_s * mu_s, 0.0));
     let nu = clamp(cos(ray.zenith_rad) * mu_s + sines * cos(ray.azimuth_rad), -1.0, 1.0);
     let direction = SkyDirection(ray.zenith_rad, ray.azimuth_rad, nu, ray.below_horizon != 0u);
-    let sky = sky_sample(sky_view_table, 0u, direction);
+    let sky = sky_sample(0u, direction);
     var radiance = sky.radiance;
-#ifdef MULTIPLE_SCATTERING
     if direction.below_horizon {
-        radiance += sky.transmittance * ground_radiance(multiple_scattering_table, 0u, direction);
+        radiance += sky.transmittance * ground_radiance(0u, direction);
     }
-#endif
     answers[id.x] = ProbeAnswer(observer.lights[0].irradiance * radiance, sky.transmittance);
 }

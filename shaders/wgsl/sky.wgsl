@@ -1,15 +1,20 @@
 #define_import_path welkin::sky
-// The sky in one direction, from the sky-view table.
+// The sky in one direction, from the sky-view table, and the ground behind it.
 //
 // The table's layers, for each light and each half of the view sphere: optical depth along the ray, multiply
 // scattered radiance, then for each scatterer its single scattering without the phase function. All for unit
 // irradiance of the light.
+//
+// Definitions: AIR (there is any), GROUND (light from the ground belongs in the picture), MULTIPLE_SCATTERING.
 
 #import welkin::atmosphere::{atmosphere, phase_per_sr, PI, SCATTERER_COUNT}
 #import welkin::mapping
 #import welkin::march::{ground_mu_s, view_ray}
-#import welkin::observer::{light_mu_s, observer}
+#import welkin::observer::{light_mu_s, observer, sky_view_range}
 #import welkin::tables::{diffuse_ground_irradiance, direct_ground_irradiance, table_sampler}
+
+@group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
+@group(0) @binding(7) var sky_view_table: texture_2d_array<f32>;
 
 const OPTICAL_DEPTH_LAYER: u32 = 0u;
 const MULTIPLE_LAYER: u32 = 1u;
@@ -37,27 +42,40 @@ struct SkySample {
     transmittance: vec3<f32>,
 }
 
-fn sky_sample(table: texture_2d_array<f32>, light: u32, direction: SkyDirection) -> SkySample {
-    let unit = mapping::sky_view_to_unit(
-        direction.zenith_rad, direction.azimuth_rad, direction.below_horizon, observer.range
-    );
-    let uv = mapping::inset(unit, vec2<f32>(textureDimensions(table)));
-    let first = layer_of(light, direction.below_horizon);
+fn sky_sample(light: u32, direction: SkyDirection) -> SkySample {
     var sample: SkySample;
-    sample.transmittance = exp(-textureSampleLevel(table, table_sampler, uv, first + OPTICAL_DEPTH_LAYER, 0.0).rgb);
-    sample.radiance = textureSampleLevel(table, table_sampler, uv, first + MULTIPLE_LAYER, 0.0).rgb;
+#ifdef AIR
+    let unit = mapping::sky_view_to_unit(
+        direction.zenith_rad, direction.azimuth_rad, direction.below_horizon, sky_view_range()
+    );
+    let uv = mapping::inset(unit, vec2<f32>(textureDimensions(sky_view_table)));
+    let layer = layer_of(light, direction.below_horizon);
+    let optical_depth = textureSampleLevel(sky_view_table, table_sampler, uv, layer + OPTICAL_DEPTH_LAYER, 0.0).rgb;
+    sample.transmittance = exp(-optical_depth);
+#ifdef MULTIPLE_SCATTERING
+    sample.radiance = textureSampleLevel(sky_view_table, table_sampler, uv, layer + MULTIPLE_LAYER, 0.0).rgb;
+#endif
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
-        let single = textureSampleLevel(table, table_sampler, uv, first + SINGLE_LAYER + c, 0.0).rgb;
+        let single = textureSampleLevel(sky_view_table, table_sampler, uv, layer + SINGLE_LAYER + c, 0.0).rgb;
         sample.radiance += phase_per_sr(c, direction.nu) * single;
     }
+#else
+    sample.transmittance = vec3<f32>(1.0);
+#endif
     return sample;
 }
 
 // Radiance that leaves the ground where a view ray meets it, 1/sr: per unit irradiance of the light.
-fn ground_radiance(table: texture_2d_array<f32>, light: u32, direction: SkyDirection) -> vec3<f32> {
-    let mu_s = light_mu_s(light);
-    let ray = view_ray(observer.altitude_m, cos(direction.zenith_rad), mu_s, direction.nu, true);
-    let ground_mu_s = ground_mu_s(ray);
-    let irradiance = direct_ground_irradiance(ground_mu_s) + diffuse_ground_irradiance(table, ground_mu_s);
-    return atmosphere.ground_albedo / PI * irradiance;
+fn ground_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
+    var radiance = vec3<f32>(0.0);
+#ifdef GROUND
+    let mu = cos(direction.zenith_rad);
+    let mu_s = ground_mu_s(view_ray(observer.altitude_m, mu, light_mu_s(light), direction.nu, true));
+    var irradiance = direct_ground_irradiance(mu_s);
+#ifdef MULTIPLE_SCATTERING
+    irradiance += diffuse_ground_irradiance(multiple_scattering_table, mu_s);
+#endif
+    radiance = atmosphere.ground_albedo / PI * irradiance;
+#endif
+    return radiance;
 }

@@ -9,14 +9,11 @@
     cut_at_shadow, leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, view_ray, AirRay, LEG_COUNT,
     NODE_COUNT
 }
-#import welkin::observer::{light_mu_s, observer}
-#import welkin::sky::{layer_of, LAYER_COUNT, MULTIPLE_LAYER, OPTICAL_DEPTH_LAYER, SINGLE_LAYER}
+#import welkin::observer::{light_mu_s, observer, sky_view_range}
+#import welkin::sky::{layer_of, multiple_scattering_table, MULTIPLE_LAYER, OPTICAL_DEPTH_LAYER, SINGLE_LAYER}
 #import welkin::tables::{multiply_scattered_source, optical_depth_to_top}
 
-#ifdef MULTIPLE_SCATTERING
-@group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
-#endif
-@group(0) @binding(7) var sky_view: texture_storage_2d_array<rgba32float, write>;
+@group(0) @binding(8) var sky_view_image: texture_storage_2d_array<rgba32float, write>;
 
 struct Integrals {
     optical_depth: vec3<f32>,
@@ -62,23 +59,23 @@ fn integrate(ray: AirRay) -> Integrals {
 // x, y: direction; z: which half of the view sphere, of which light.
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
-    let size = textureDimensions(sky_view);
+    let size = textureDimensions(sky_view_image);
     if any(texel.xy >= size) {
         return;
     }
     let light = texel.z / 2u;
     let below_horizon = texel.z % 2u == 1u;
     let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(size));
-    let view = mapping::sky_view_from_unit(unit, below_horizon, observer.range);
+    let view = mapping::sky_view_from_unit(unit, below_horizon, sky_view_range());
     let mu = cos(view.zenith_rad);
     let mu_s = light_mu_s(light);
     let sines = sin(view.zenith_rad) * sqrt(max(1.0 - mu_s * mu_s, 0.0));
     let nu = clamp(mu * mu_s + sines * cos(view.azimuth_rad), -1.0, 1.0);
     var sum = integrate(cut_at_shadow(view_ray(observer.altitude_m, mu, mu_s, nu, below_horizon)));
     let first = layer_of(light, below_horizon);
-    textureStore(sky_view, texel.xy, first + OPTICAL_DEPTH_LAYER, vec4<f32>(sum.optical_depth, 0.0));
-    textureStore(sky_view, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(sum.multiple, 0.0));
+    textureStore(sky_view_image, texel.xy, first + OPTICAL_DEPTH_LAYER, vec4<f32>(sum.optical_depth, 0.0));
+    textureStore(sky_view_image, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(sum.multiple, 0.0));
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
-        textureStore(sky_view, texel.xy, first + SINGLE_LAYER + c, vec4<f32>(sum.single[c], 0.0));
+        textureStore(sky_view_image, texel.xy, first + SINGLE_LAYER + c, vec4<f32>(sum.single[c], 0.0));
     }
 }

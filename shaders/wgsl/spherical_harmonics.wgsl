@@ -11,14 +11,13 @@
 const DEGREE_COUNT: u32 = #{DEGREE_COUNT}u;
 const COEFFICIENT_COUNT: u32 = #{COEFFICIENT_COUNT}u;
 
-alias Harmonics = array<f32, COEFFICIENT_COUNT>;
 
 // Y_lm(mu, phi) for all coefficients.
-fn harmonics(mu: f32, cos_phi: f32) -> Harmonics {
+fn harmonics(mu: f32, cos_phi: f32) -> array<f32, COEFFICIENT_COUNT> {
     let s2 = max(1.0 - mu * mu, 0.0);
     let s = sqrt(s2);
     let cos_2phi = 2.0 * cos_phi * cos_phi - 1.0;
-    var y: Harmonics;
+    var y: array<f32, COEFFICIENT_COUNT>;
     y[0] = 0.282094792;
     y[1] = 0.488602512 * mu;
     y[2] = 0.488602512 * s * cos_phi;

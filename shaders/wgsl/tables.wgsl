@@ -1,12 +1,12 @@
 #define_import_path welkin::tables
 // Reading the tables that belong to a medium: optical depth to the top, and multiply scattered light.
 //
-// Definitions: SCATTERER_COUNT, DEGREE_COUNT (see atmosphere, spherical_harmonics).
+// Definitions: AIR (there is any).
 
 #import welkin::atmosphere::{atmosphere, CONSTITUENT_SLOTS, SCATTERER_COUNT}
 #import welkin::mapping
 #import welkin::march::LocalDirections
-#import welkin::spherical_harmonics::{COEFFICIENT_COUNT, DEGREE_COUNT, Harmonics, degree_of, harmonics}
+#import welkin::spherical_harmonics::{COEFFICIENT_COUNT, DEGREE_COUNT, degree_of, harmonics}
 
 @group(0) @binding(3) var table_sampler: sampler;
 // Optical depth from an altitude along a direction to the top, one component per band.
@@ -71,5 +71,9 @@ fn direct_ground_irradiance(mu_s: f32) -> vec3<f32> {
     if mu_s <= 0.0 {
         return vec3<f32>(0.0);
     }
+#ifdef AIR
     return mu_s * exp(-optical_depth_to_top(0.0, mu_s));
+#else
+    return vec3<f32>(mu_s);
+#endif
 }

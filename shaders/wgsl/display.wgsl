@@ -1,0 +1,57 @@
+// Pass: from linear radiance to an 8-bit sRGB picture; the same curve as the host's output::display.
+//
+// Definitions: FILMIC (else radiance is clipped at 1).
+
+@group(0) @binding(0) var radiance_image: texture_2d<f32>;
+@group(0) @binding(1) var picture_image: texture_storage_2d<rgba8unorm, write>;
+
+struct Display {
+    // What radiance is multiplied by, band by band: exposure and white balance.
+    exposure: vec3<f32>,
+    padding: f32,
+}
+
+@group(0) @binding(2) var<uniform> display: Display;
+
+// From [0, inf[ to [0, 1].
+fn tone_map(exposed: vec3<f32>) -> vec3<f32> {
+#ifdef FILMIC
+    // The share of film grains that at least one photon has met.
+    return 1.0 - exp(-exposed);
+#else
+    return min(exposed, vec3<f32>(1.0));
+#endif
+}
+
+// IEC 61966-2-1.
+fn srgb_encoded(linear: vec3<f32>) -> vec3<f32> {
+    let power = 1.055 * pow(linear, vec3<f32>(1.0 / 2.4)) - 0.055;
+    return select(power, 12.92 * linear, linear <= vec3<f32>(0.0031308));
+}
+
+// Integer hash of a pixel and a channel (Jarzynski & Olano 2020, pcg), in [0, 1[.
+fn hashed(seed: u32) -> f32 {
+    let state = seed * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return f32(((word >> 22u) ^ word) >> 8u) / 16777216.0;
+}
+
+// Triangular noise of one 8-bit step: it turns the steps of smooth skies into grain too fine to see.
+fn dither(pixel: vec2<u32>) -> vec3<f32> {
+    var noise: vec3<f32>;
+    for (var channel = 0u; channel < 3u; channel++) {
+        let seed = 2u * (channel + 3u * (pixel.x + 65536u * pixel.y));
+        noise[channel] = (hashed(seed) + hashed(seed + 1u) - 1.0) / 255.0;
+    }
+    return noise;
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= textureDimensions(picture_image)) {
+        return;
+    }
+    let radiance = textureLoad(radiance_image, id.xy, 0).rgb;
+    let encoded = srgb_encoded(tone_map(max(radiance, vec3<f32>(0.0)) * display.exposure));
+    textureStore(picture_image, id.xy, vec4<f32>(encoded + dither(id.xy), 1.0));
+}

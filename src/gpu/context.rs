@@ -1,0 +1,168 @@
+//! The open device with what every resource needs of it: queue, memory, names.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use ash::{ext, vk};
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
+use gpu_allocator::{AllocationSizes, MemoryLocation};
+
+use super::device::{Candidate, DeviceInfo};
+use super::error::{During, GpuError};
+use super::instance::Instance;
+
+const MEBIBYTE: u64 = 1 << 20;
+
+/// A logical device. Every resource keeps it alive; it goes when the last of them is gone.
+pub(crate) struct Context {
+    pub(crate) device: ash::Device,
+    pub(crate) info: DeviceInfo,
+    pub(crate) queue_family: u32,
+    queue: Mutex<vk::Queue>,
+    /// `None` only while the device is being destroyed.
+    allocator: Mutex<Option<Allocator>>,
+    debug: Option<ext::debug_utils::Device>,
+    /// Label of the recording that is open.
+    recording: Mutex<Option<String>>,
+    pub(crate) physical_device: vk::PhysicalDevice,
+    /// Last, so that it is destroyed after the device.
+    pub(crate) instance: Instance,
+}
+
+impl Context {
+    pub(crate) fn new(instance: Instance, candidate: Candidate) -> Result<Self, GpuError> {
+        let device = create_device(&instance.raw, &candidate)?;
+        let debug = instance.debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &device));
+        // SAFETY: the device was created with one queue of this family.
+        let queue = unsafe { device.get_device_queue(candidate.queue_family, 0) };
+        let context = Self {
+            device,
+            info: candidate.info,
+            queue_family: candidate.queue_family,
+            queue: Mutex::new(queue),
+            allocator: Mutex::new(None),
+            debug,
+            recording: Mutex::new(None),
+            physical_device: candidate.raw,
+            instance,
+        };
+        let allocator = Allocator::new(&AllocatorCreateDesc {
+            instance: context.instance.raw.clone(),
+            device: context.device.clone(),
+            physical_device: candidate.raw,
+            debug_settings: Default::default(),
+            buffer_device_address: false,
+            allocation_sizes: AllocationSizes::new(64 * MEBIBYTE, 16 * MEBIBYTE),
+        });
+        let failed = |source| GpuError::Memory { name: "allocator".to_owned(), bytes: 0, source };
+        *lock(&context.allocator) = Some(allocator.map_err(failed)?);
+        Ok(context)
+    }
+
+    /// Memory for a resource; freed by [`Context::free`].
+    pub(crate) fn allocate(
+        &self,
+        name: &str,
+        requirements: vk::MemoryRequirements,
+        location: MemoryLocation,
+        linear: bool,
+    ) -> Result<Allocation, GpuError> {
+        let allocation_scheme = AllocationScheme::GpuAllocatorManaged;
+        let description = AllocationCreateDesc { name, requirements, location, linear, allocation_scheme };
+        let mut allocator = lock(&self.allocator);
+        let allocator = allocator.as_mut().expect("the allocator lives as long as the device");
+        let failed = |source| GpuError::Memory { name: name.to_owned(), bytes: requirements.size, source };
+        allocator.allocate(&description).map_err(failed)
+    }
+
+    pub(crate) fn free(&self, allocation: Allocation) {
+        if let Some(allocator) = lock(&self.allocator).as_mut()
+            && let Err(error) = allocator.free(allocation)
+        {
+            tracing::error!("freeing device memory: {error}");
+        }
+    }
+
+    /// Submits a command buffer; `fence` is signalled when it is done.
+    pub(crate) fn submit(&self, commands: vk::CommandBuffer, fence: vk::Fence) -> Result<(), GpuError> {
+        let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(commands)];
+        let submission = vk::SubmitInfo2::default().command_buffer_infos(&buffers);
+        let queue = lock(&self.queue);
+        // SAFETY: the lock keeps other threads from the queue; the command buffer has ended.
+        unsafe { self.device.queue_submit2(*queue, &[submission], fence) }.during("vkQueueSubmit2")
+    }
+
+    /// Gives a Vulkan object a name in validation messages and debuggers.
+    pub(crate) fn name(&self, object: impl vk::Handle, name: &str) {
+        let (Some(debug), Ok(name)) = (&self.debug, std::ffi::CString::new(name)) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
+        // SAFETY: the object is alive and of this device. A name that cannot be given changes nothing.
+        let _ = unsafe { debug.set_debug_utils_object_name(&info) };
+    }
+
+    pub(crate) fn begin_label(&self, commands: vk::CommandBuffer, label: &str) {
+        let (Some(debug), Ok(label)) = (&self.debug, std::ffi::CString::new(label)) else { return };
+        let label = vk::DebugUtilsLabelEXT::default().label_name(&label);
+        // SAFETY: the command buffer is being recorded.
+        unsafe { debug.cmd_begin_debug_utils_label(commands, &label) };
+    }
+
+    pub(crate) fn end_label(&self, commands: vk::CommandBuffer) {
+        if let Some(debug) = &self.debug {
+            // SAFETY: the command buffer is being recorded and has an open label.
+            unsafe { debug.cmd_end_debug_utils_label(commands) };
+        }
+    }
+
+    /// Marks a recording as open: until it is closed, nothing else may be submitted, as the states of resources that
+    /// it starts from would no longer be true.
+    pub(crate) fn open_recording(&self, label: &str) -> Result<(), GpuError> {
+        self.check_idle("record another list")?;
+        *lock(&self.recording) = Some(label.to_owned());
+        Ok(())
+    }
+
+    pub(crate) fn close_recording(&self) {
+        *lock(&self.recording) = None;
+    }
+
+    /// An error when a recording is open.
+    pub(crate) fn check_idle(&self, action: &str) -> Result<(), GpuError> {
+        match lock(&self.recording).as_ref() {
+            Some(open) => Err(GpuError::Recording { action: action.to_owned(), open: open.clone() }),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Drop for Context {
+    fn drop(&mut self) {
+        // SAFETY: no resource is left, as each keeps the context; the allocator's blocks go before the device.
+        unsafe {
+            let _ = self.device.device_wait_idle();
+            drop(lock(&self.allocator).take());
+            self.device.destroy_device(None);
+        }
+    }
+}
+
+/// The content, also after a panic of another thread: it is only ever replaced as a whole.
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn create_device(instance: &ash::Instance, candidate: &Candidate) -> Result<ash::Device, GpuError> {
+    let queue =
+        [vk::DeviceQueueCreateInfo::default().queue_family_index(candidate.queue_family).queue_priorities(&[1.0])];
+    // Robust access defines what WGSL promises for indices out of bounds; Vulkan 1.3 requires both features.
+    let features = vk::PhysicalDeviceFeatures::default()
+        .robust_buffer_access(true)
+        .shader_storage_image_extended_formats(candidate.extended_storage_formats);
+    let mut features_1_3 =
+        vk::PhysicalDeviceVulkan13Features::default().synchronization2(true).robust_image_access(true);
+    let info = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queue)
+        .enabled_features(&features)
+        .push_next(&mut features_1_3);
+    // SAFETY: the device is of this instance and has the queue family and the features.
+    unsafe { instance.create_device(candidate.raw, &info, None) }.during("vkCreateDevice")
+}

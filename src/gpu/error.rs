@@ -1,0 +1,187 @@
+//! What can go wrong on the way to a device and on it.
+
+use ash::vk;
+
+/// Why the device could not do what was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// The Vulkan loader is not installed.
+    #[error(
+        "no Vulkan loader ({0}); install it and a driver, on Debian and Ubuntu: apt-get install libvulkan1 \
+         mesa-vulkan-drivers"
+    )]
+    NoLoader(String),
+    /// A loader without any driver.
+    #[error(
+        "no Vulkan device; install a driver, on Debian and Ubuntu: apt-get install libvulkan1 mesa-vulkan-drivers \
+         (mesa-vulkan-drivers renders on the CPU where there is no GPU)"
+    )]
+    NoDevice,
+    /// Devices, but none that can be used.
+    #[error(
+        "no usable Vulkan 1.3 device among: {0}; install a newer driver, on Debian and Ubuntu: apt-get install \
+         libvulkan1 mesa-vulkan-drivers"
+    )]
+    NoUsableDevice(String),
+    /// The requested device is not there.
+    #[error("no Vulkan device `{requested}`; there are: {available}")]
+    UnknownDevice {
+        /// The name or index that was asked for.
+        requested: String,
+        /// What there is, with indices.
+        available: String,
+    },
+    /// The requested device is there but cannot be used.
+    #[error("the device {device} cannot be used: {reason}")]
+    UnusableDevice {
+        /// The device's name.
+        device: String,
+        /// What it lacks.
+        reason: String,
+    },
+    /// Validation was asked for and its layer is not installed.
+    #[error(
+        "the Vulkan validation layer is not installed; on Debian and Ubuntu: apt-get install vulkan-validationlayers"
+    )]
+    NoValidationLayer,
+    /// A Vulkan call failed.
+    #[error("{call} failed: {result}")]
+    Vulkan {
+        /// The function's name.
+        call: &'static str,
+        /// What it returned.
+        result: vk::Result,
+    },
+    /// Memory for a resource could not be had.
+    #[error("no memory for `{name}` ({bytes} bytes): {source}")]
+    Memory {
+        /// The resource.
+        name: String,
+        /// Its size.
+        bytes: u64,
+        /// The allocator's reason.
+        source: gpu_allocator::AllocationError,
+    },
+    /// A resource cannot be made as asked.
+    #[error("cannot make `{name}`: {reason}")]
+    Resource {
+        /// The resource.
+        name: String,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
+    /// A pipeline cannot be made from a pass.
+    #[error("pass `{pass}`: {reason}")]
+    Pipeline {
+        /// The pass.
+        pass: String,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
+    /// A dispatch leaves a resource out.
+    #[error("pass `{pass}`: nothing is bound to `{binding}`")]
+    MissingBinding {
+        /// The pass.
+        pass: String,
+        /// The WGSL variable.
+        binding: String,
+    },
+    /// A dispatch binds something that the pass does not use.
+    #[error("pass `{pass}` uses no `{binding}`; it uses: {expected}")]
+    SuperfluousBinding {
+        /// The pass.
+        pass: String,
+        /// The name that was bound.
+        binding: String,
+        /// The WGSL variables of the pass.
+        expected: String,
+    },
+    /// A dispatch binds one name twice.
+    #[error("pass `{pass}`: `{binding}` is bound twice")]
+    DuplicateBinding {
+        /// The pass.
+        pass: String,
+        /// The name that was bound.
+        binding: String,
+    },
+    /// What is bound is of another kind than the WGSL variable.
+    #[error("pass `{pass}`: `{binding}` is {expected}, but {found} is bound to it")]
+    WrongBinding {
+        /// The pass.
+        pass: String,
+        /// The WGSL variable.
+        binding: String,
+        /// What the pass declares.
+        expected: String,
+        /// What was bound.
+        found: String,
+    },
+    /// A dispatch binds one resource to two variables, at least one of which writes or wants another image layout.
+    #[error("pass `{pass}`: `{first}` and `{second}` are the same resource, and one of them is written")]
+    Aliased {
+        /// The pass.
+        pass: String,
+        /// One WGSL variable.
+        first: String,
+        /// The other one.
+        second: String,
+    },
+    /// A dispatch reads a resource that nothing has written.
+    #[error("pass `{pass}` reads `{binding}` (`{resource}`), which nothing has written yet")]
+    ReadBeforeWrite {
+        /// The pass.
+        pass: String,
+        /// The WGSL variable.
+        binding: String,
+        /// The resource's name.
+        resource: String,
+    },
+    /// A dispatch is empty or larger than the device allows.
+    #[error("pass `{pass}`: {workgroups:?} workgroups; each number must be in 1..={limit:?}")]
+    DispatchSize {
+        /// The pass.
+        pass: String,
+        /// What was asked for.
+        workgroups: [u32; 3],
+        /// The device's limits.
+        limit: [u32; 3],
+    },
+    /// Device memory was to be read or written while commands that may use it are being recorded.
+    #[error("cannot {action} while `{open}` is being recorded; submit it first")]
+    Recording {
+        /// What was to be done.
+        action: String,
+        /// The label of the open recording.
+        open: String,
+    },
+    /// The host's elements do not fit a resource.
+    #[error("`{name}` has {expected} bytes, but {found} bytes were given or asked for")]
+    Size {
+        /// The resource.
+        name: String,
+        /// Its size in bytes.
+        expected: u64,
+        /// The size of the host's elements in bytes.
+        found: u64,
+    },
+}
+
+impl GpuError {
+    /// Whether the cause is that this machine has no Vulkan device that can be used, so that a program can tell it
+    /// from other failures.
+    pub fn is_no_usable_device(&self) -> bool {
+        use GpuError as E;
+        matches!(self, E::NoLoader(_) | E::NoDevice | E::NoUsableDevice(_) | E::UnusableDevice { .. })
+    }
+}
+
+/// Names the Vulkan call that failed.
+pub(crate) trait During<T> {
+    fn during(self, call: &'static str) -> Result<T, GpuError>;
+}
+
+impl<T> During<T> for Result<T, vk::Result> {
+    fn during(self, call: &'static str) -> Result<T, GpuError> {
+        self.map_err(|result| GpuError::Vulkan { call, result })
+    }
+}

@@ -1,0 +1,217 @@
+//! Images in device memory.
+
+use std::sync::{Arc, Mutex};
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::Allocation;
+use welkin_shaders::Dimension;
+
+use super::barrier::State;
+use super::context::Context;
+use super::error::{During, GpuError};
+use super::format::ImageFormat;
+
+/// Shapes of images, in texels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ImageShape {
+    /// Width.
+    D1(u32),
+    /// Width and height.
+    D2(u32, u32),
+    /// Width, height and layers.
+    D2Array(u32, u32, u32),
+    /// Width, height and depth.
+    D3(u32, u32, u32),
+}
+
+impl ImageShape {
+    /// Width, height and depth; a layer counts as 1 deep.
+    pub const fn extent(self) -> [u32; 3] {
+        match self {
+            Self::D1(width) => [width, 1, 1],
+            Self::D2(width, height) | Self::D2Array(width, height, _) => [width, height, 1],
+            Self::D3(width, height, depth) => [width, height, depth],
+        }
+    }
+
+    /// Number of layers, 1 unless it is an array.
+    pub const fn layers(self) -> u32 {
+        match self {
+            Self::D2Array(_, _, layers) => layers,
+            _ => 1,
+        }
+    }
+
+    /// Number of texels.
+    pub const fn texels(self) -> u64 {
+        let [width, height, depth] = self.extent();
+        width as u64 * height as u64 * depth as u64 * self.layers() as u64
+    }
+
+    /// The WGSL texture dimension.
+    pub const fn dimension(self) -> Dimension {
+        match self {
+            Self::D1(_) => Dimension::D1,
+            Self::D2(..) => Dimension::D2,
+            Self::D2Array(..) => Dimension::D2Array,
+            Self::D3(..) => Dimension::D3,
+        }
+    }
+
+    const fn types(self) -> (vk::ImageType, vk::ImageViewType) {
+        match self {
+            Self::D1(_) => (vk::ImageType::TYPE_1D, vk::ImageViewType::TYPE_1D),
+            Self::D2(..) => (vk::ImageType::TYPE_2D, vk::ImageViewType::TYPE_2D),
+            Self::D2Array(..) => (vk::ImageType::TYPE_2D, vk::ImageViewType::TYPE_2D_ARRAY),
+            Self::D3(..) => (vk::ImageType::TYPE_3D, vk::ImageViewType::TYPE_3D),
+        }
+    }
+
+    pub(crate) fn vulkan_extent(self) -> vk::Extent3D {
+        let [width, height, depth] = self.extent();
+        vk::Extent3D { width, height, depth }
+    }
+}
+
+/// An image that shaders can sample and store to. Clones are the same image.
+#[derive(Clone)]
+pub struct GpuImage(pub(crate) Arc<ImageInner>);
+
+impl GpuImage {
+    /// Its name in messages.
+    pub fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// Its shape.
+    pub fn shape(&self) -> ImageShape {
+        self.0.shape
+    }
+
+    /// Its format.
+    pub fn format(&self) -> ImageFormat {
+        self.0.format
+    }
+
+    /// Bytes of its texels, without what the device adds.
+    pub fn bytes(&self) -> u64 {
+        self.0.shape.texels() * self.0.format.texel_bytes()
+    }
+}
+
+pub(crate) struct ImageInner {
+    context: Arc<Context>,
+    name: String,
+    shape: ImageShape,
+    format: ImageFormat,
+    pub(crate) raw: vk::Image,
+    pub(crate) view: vk::ImageView,
+    allocation: Option<Allocation>,
+    /// After all that has been submitted.
+    pub(crate) state: Mutex<State>,
+}
+
+impl ImageInner {
+    pub(crate) fn new(
+        context: &Arc<Context>,
+        name: &str,
+        shape: ImageShape,
+        format: ImageFormat,
+    ) -> Result<Self, GpuError> {
+        check(context, name, shape, format)?;
+        let device = &context.device;
+        // SAFETY: shape and format are within the device's limits.
+        let raw = unsafe { device.create_image(&image_info(shape, format), None) }.during("vkCreateImage")?;
+        // From here on, an early return destroys what there is.
+        let mut image = Self {
+            context: context.clone(),
+            name: name.to_owned(),
+            shape,
+            format,
+            raw,
+            view: vk::ImageView::null(),
+            allocation: None,
+            state: Mutex::default(),
+        };
+        context.name(raw, name);
+        // SAFETY: the image is alive; its memory is of the size and type it requires, and is not used by others.
+        unsafe {
+            let requirements = device.get_image_memory_requirements(raw);
+            let allocation = context.allocate(name, requirements, MemoryLocation::GpuOnly, false)?;
+            let allocation = image.allocation.insert(allocation);
+            device.bind_image_memory(raw, allocation.memory(), allocation.offset()).during("vkBindImageMemory")?;
+            let whole = vk::ImageSubresourceRange::default()
+                .aspect_mask(vk::ImageAspectFlags::COLOR)
+                .level_count(1)
+                .layer_count(shape.layers());
+            let view = vk::ImageViewCreateInfo::default()
+                .image(raw)
+                .view_type(shape.types().1)
+                .format(format.vulkan())
+                .subresource_range(whole);
+            image.view = device.create_image_view(&view, None).during("vkCreateImageView")?;
+        }
+        context.name(image.view, name);
+        Ok(image)
+    }
+}
+
+impl Drop for ImageInner {
+    fn drop(&mut self) {
+        // SAFETY: recordings keep what they use until it is done; null handles are ignored.
+        unsafe {
+            self.context.device.destroy_image_view(self.view, None);
+            self.context.device.destroy_image(self.raw, None);
+        }
+        if let Some(allocation) = self.allocation.take() {
+            self.context.free(allocation);
+        }
+    }
+}
+
+fn image_info(shape: ImageShape, format: ImageFormat) -> vk::ImageCreateInfo<'static> {
+    use vk::ImageUsageFlags as Usage;
+    vk::ImageCreateInfo::default()
+        .image_type(shape.types().0)
+        .format(format.vulkan())
+        .extent(shape.vulkan_extent())
+        .mip_levels(1)
+        .array_layers(shape.layers())
+        .samples(vk::SampleCountFlags::TYPE_1)
+        .tiling(vk::ImageTiling::OPTIMAL)
+        .usage(Usage::SAMPLED | Usage::STORAGE | Usage::TRANSFER_SRC | Usage::TRANSFER_DST)
+        .sharing_mode(vk::SharingMode::EXCLUSIVE)
+        .initial_layout(vk::ImageLayout::UNDEFINED)
+}
+
+/// What the device can do with a format in images of optimal tiling.
+pub(crate) fn format_features(context: &Context, format: ImageFormat) -> vk::FormatFeatureFlags {
+    let instance = &context.instance.raw;
+    // SAFETY: the physical device is of this instance.
+    let properties =
+        unsafe { instance.get_physical_device_format_properties(context.physical_device, format.vulkan()) };
+    properties.optimal_tiling_features
+}
+
+fn check(context: &Context, name: &str, shape: ImageShape, format: ImageFormat) -> Result<(), GpuError> {
+    let refuse = |reason: String| Err(GpuError::Resource { name: name.to_owned(), reason });
+    let limits = &context.info.limits;
+    let side = match shape.dimension() {
+        Dimension::D1 => limits.image_side[0],
+        Dimension::D2 | Dimension::D2Array => limits.image_side[1],
+        Dimension::D3 => limits.image_side[2],
+    };
+    if shape.extent().iter().any(|&texels| texels == 0 || texels > side) {
+        return refuse(format!("an image of {shape:?} texels; each side must be in 1..={side}"));
+    }
+    if shape.layers() == 0 || shape.layers() > limits.image_layers {
+        return refuse(format!("an image of {shape:?}; its layers must be in 1..={}", limits.image_layers));
+    }
+    use vk::FormatFeatureFlags as Feature;
+    let needed = Feature::SAMPLED_IMAGE | Feature::STORAGE_IMAGE | Feature::TRANSFER_SRC | Feature::TRANSFER_DST;
+    if !format_features(context, format).contains(needed) {
+        return refuse(format!("{} cannot sample and store {format:?}", context.info.name));
+    }
+    Ok(())
+}

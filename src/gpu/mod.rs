@@ -1,0 +1,210 @@
+//! Compute on Vulkan 1.3: device, memory, images, pipelines, barriers, timers, readback.
+//!
+//! A [`Gpu`] makes images, buffers, samplers and pipelines. [`Gpu::record`] starts a list of dispatches, which bind
+//! resources by the names of the WGSL's variables; the barriers between them follow from what the passes declare.
+//! Knows nothing of what is computed.
+
+mod barrier;
+mod buffer;
+mod command_list;
+mod context;
+mod descriptors;
+mod device;
+mod error;
+mod format;
+mod image;
+mod instance;
+mod pipeline;
+mod recorder;
+mod resource;
+mod sampler;
+mod timer;
+mod transfer;
+mod validation;
+
+use std::sync::Arc;
+
+use bytemuck::{AnyBitPattern, NoUninit};
+use welkin_shaders::Shader;
+
+pub use buffer::{BufferKind, GpuBuffer};
+pub use device::{DeviceInfo, DeviceKind, DeviceRequest, Limits};
+pub use error::GpuError;
+pub use format::{Filtering, ImageFormat};
+pub use image::{GpuImage, ImageShape};
+pub use pipeline::{MAX_UNIFORM_BUFFERS, Pipeline};
+pub use recorder::{Commands, Completed, Work};
+pub use resource::Resource;
+pub use sampler::{AddressMode, Filter, Sampler};
+pub use timer::{Clock, DispatchTime};
+pub use validation::{Validation, ValidationLog, ValidationMessage};
+
+use buffer::BufferInner;
+use context::Context;
+use image::ImageInner;
+use instance::Instance;
+use pipeline::PipelineInner;
+use sampler::SamplerInner;
+
+/// An open device. Clones are the same device; it is closed when they and all its resources are gone.
+#[derive(Clone)]
+pub struct Gpu(Arc<Context>);
+
+impl Gpu {
+    /// Opens a device: the one that is asked for, else the best GPU, else a driver that computes on the CPU, which is
+    /// said in a warning.
+    ///
+    /// # Errors
+    /// When there is no loader, no device, no such device, none with Vulkan 1.3, or no validation layer where one is
+    /// asked for. [`GpuError::is_no_usable_device`] tells those that installing a driver mends.
+    pub fn new(request: &DeviceRequest) -> Result<Self, GpuError> {
+        let instance = Instance::new(request.validation)?;
+        let candidate = device::choose(&instance, request.device.as_deref())?;
+        let info = &candidate.info;
+        tracing::info!("device: {} ({} {})", info.name, info.driver, info.driver_version);
+        if request.device.is_none() && !matches!(info.kind, DeviceKind::DiscreteGpu | DeviceKind::IntegratedGpu) {
+            tracing::warn!("no GPU found: {} computes on the CPU", info.name);
+        }
+        Ok(Self(Arc::new(Context::new(instance, candidate)?)))
+    }
+
+    /// What the device says of itself.
+    pub fn info(&self) -> &DeviceInfo {
+        &self.0.info
+    }
+
+    /// The messages of the validation layer so far and from now on; empty without the layer.
+    pub fn validation_log(&self) -> ValidationLog {
+        self.0.instance.log.clone()
+    }
+
+    /// How the device samples a format.
+    pub fn filtering(&self, format: ImageFormat) -> Filtering {
+        let linear = ash::vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
+        let features = image::format_features(&self.0, format);
+        if features.contains(linear) { Filtering::Linear } else { Filtering::NearestOnly }
+    }
+
+    /// An image that holds nothing yet.
+    ///
+    /// # Errors
+    /// When shape or format are beyond the device, or memory is short.
+    pub fn image(&self, name: &str, shape: ImageShape, format: ImageFormat) -> Result<GpuImage, GpuError> {
+        ImageInner::new(&self.0, name, shape, format).map(|inner| GpuImage(Arc::new(inner)))
+    }
+
+    /// A storage buffer that holds nothing yet.
+    ///
+    /// # Errors
+    /// When it is empty, beyond the device, or memory is short.
+    pub fn storage_buffer(&self, name: &str, bytes: u64) -> Result<GpuBuffer, GpuError> {
+        self.buffer(name, BufferKind::Storage, bytes)
+    }
+
+    /// A storage buffer with content.
+    ///
+    /// # Errors
+    /// As [`Gpu::storage_buffer`]; [`GpuError::Recording`].
+    pub fn storage_buffer_of<T: NoUninit>(&self, name: &str, content: &[T]) -> Result<GpuBuffer, GpuError> {
+        let buffer = self.storage_buffer(name, size_of_val(content) as u64)?;
+        self.write_buffer(&buffer, content)?;
+        Ok(buffer)
+    }
+
+    /// A uniform buffer with content, whose layout must be the WGSL struct's.
+    ///
+    /// # Errors
+    /// When it is empty, beyond the device, or memory is short; [`GpuError::Recording`].
+    pub fn uniform_buffer<T: NoUninit>(&self, name: &str, content: &T) -> Result<GpuBuffer, GpuError> {
+        let buffer = self.buffer(name, BufferKind::Uniform, size_of::<T>() as u64)?;
+        self.write_buffer(&buffer, std::slice::from_ref(content))?;
+        Ok(buffer)
+    }
+
+    fn buffer(&self, name: &str, kind: BufferKind, bytes: u64) -> Result<GpuBuffer, GpuError> {
+        BufferInner::new(&self.0, name, kind, bytes).map(|inner| GpuBuffer(Arc::new(inner)))
+    }
+
+    /// A sampler; `address` is for u, v and w.
+    ///
+    /// # Errors
+    /// When the device cannot make one.
+    pub fn sampler(&self, filter: Filter, address: [AddressMode; 3]) -> Result<Sampler, GpuError> {
+        SamplerInner::new(&self.0, filter, address).map(|inner| Sampler(Arc::new(inner)))
+    }
+
+    /// A pipeline for a compiled pass.
+    ///
+    /// # Errors
+    /// When the pass needs more than the device or [`MAX_UNIFORM_BUFFERS`] allow.
+    pub fn pipeline(&self, shader: &Shader) -> Result<Pipeline, GpuError> {
+        PipelineInner::new(&self.0, shader).map(|inner| Pipeline(Arc::new(inner)))
+    }
+
+    /// Starts a list of dispatches. Until it is submitted or dropped, nothing else may be recorded, written or read.
+    ///
+    /// # Errors
+    /// [`GpuError::Recording`] when another list is open.
+    pub fn record(&self, label: &str) -> Result<Commands, GpuError> {
+        Commands::new(&self.0, label, None)
+    }
+
+    /// As [`Gpu::record`], and each dispatch's time is taken. On a device without timestamps that can be trusted
+    /// ([`Clock::of`]) each dispatch is run by itself, at once.
+    ///
+    /// # Errors
+    /// As [`Gpu::record`].
+    pub fn record_timed(&self, label: &str) -> Result<Commands, GpuError> {
+        self.record_timed_by(label, Clock::of(self.info()))
+    }
+
+    fn record_timed_by(&self, label: &str, clock: Clock) -> Result<Commands, GpuError> {
+        Commands::new(&self.0, label, Some(clock))
+    }
+
+    /// Fills an image with texels in rows from the first, then slices or layers.
+    ///
+    /// # Errors
+    /// [`GpuError::Size`] unless the elements have as many bytes as the image; [`GpuError::Recording`].
+    pub fn write_image<T: NoUninit>(&self, image: &GpuImage, texels: &[T]) -> Result<(), GpuError> {
+        transfer::write_image(&self.0, image, bytemuck::cast_slice(texels))
+    }
+
+    /// An image's texels, in rows from the first, then slices or layers.
+    ///
+    /// # Errors
+    /// [`GpuError::Size`] unless the image has a whole number of elements; [`GpuError::Recording`];
+    /// [`GpuError::Resource`] when nothing has been written to it.
+    pub fn read_image<T: AnyBitPattern + NoUninit>(&self, image: &GpuImage) -> Result<Vec<T>, GpuError> {
+        let mut texels = elements::<T>(image.name(), image.bytes())?;
+        transfer::read_image(&self.0, image, bytemuck::cast_slice_mut(&mut texels))?;
+        Ok(texels)
+    }
+
+    /// Replaces a buffer's whole content.
+    ///
+    /// # Errors
+    /// [`GpuError::Size`] unless the elements have as many bytes as the buffer; [`GpuError::Recording`].
+    pub fn write_buffer<T: NoUninit>(&self, buffer: &GpuBuffer, content: &[T]) -> Result<(), GpuError> {
+        transfer::write_buffer(&self.0, buffer, bytemuck::cast_slice(content))
+    }
+
+    /// A buffer's whole content.
+    ///
+    /// # Errors
+    /// As [`Gpu::read_image`].
+    pub fn read_buffer<T: AnyBitPattern + NoUninit>(&self, buffer: &GpuBuffer) -> Result<Vec<T>, GpuError> {
+        let mut content = elements::<T>(buffer.name(), buffer.bytes())?;
+        transfer::read_buffer(&self.0, buffer, bytemuck::cast_slice_mut(&mut content))?;
+        Ok(content)
+    }
+}
+
+/// As many zeroed elements as fill so many bytes.
+fn elements<T: AnyBitPattern>(name: &str, bytes: u64) -> Result<Vec<T>, GpuError> {
+    let size = size_of::<T>() as u64;
+    if size == 0 || !bytes.is_multiple_of(size) {
+        return Err(GpuError::Size { name: name.to_owned(), expected: bytes, found: size });
+    }
+    Ok(vec![T::zeroed(); (bytes / size) as usize])
+}

@@ -1,0 +1,141 @@
+//! Compute pipelines, made from compiled passes.
+
+use std::sync::Arc;
+
+use ash::vk;
+use welkin_shaders::{Binding, BindingKind, Shader};
+
+use super::context::Context;
+use super::error::{During, GpuError};
+
+/// Uniform buffers that a pass may use. Mesa 22's lavapipe writes out of bounds when a branch or loop bound depends on
+/// a load from the fourth or a later one of a stage.
+pub const MAX_UNIFORM_BUFFERS: usize = 3;
+
+/// A pass that is ready to be dispatched. Clones are the same pipeline.
+#[derive(Clone)]
+pub struct Pipeline(pub(crate) Arc<PipelineInner>);
+
+impl Pipeline {
+    /// The pass's name.
+    pub fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// What must be bound when it is dispatched.
+    pub fn bindings(&self) -> &[Binding] {
+        &self.0.bindings
+    }
+}
+
+pub(crate) struct PipelineInner {
+    context: Arc<Context>,
+    pub(crate) name: String,
+    pub(crate) bindings: Vec<Binding>,
+    pub(crate) workgroup_size: [u32; 3],
+    /// One for each `@group`, empty ones included.
+    pub(crate) set_layouts: Vec<vk::DescriptorSetLayout>,
+    pub(crate) layout: vk::PipelineLayout,
+    pub(crate) raw: vk::Pipeline,
+}
+
+impl PipelineInner {
+    pub(crate) fn new(context: &Arc<Context>, shader: &Shader) -> Result<Self, GpuError> {
+        check(context, shader)?;
+        // An early return destroys what there is.
+        let mut pipeline = Self {
+            context: context.clone(),
+            name: shader.name.clone(),
+            bindings: shader.bindings.clone(),
+            workgroup_size: shader.workgroup_size,
+            set_layouts: Vec::new(),
+            layout: vk::PipelineLayout::null(),
+            raw: vk::Pipeline::null(),
+        };
+        let groups = shader.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
+        for group in 0..groups {
+            pipeline.set_layouts.push(set_layout(context, &shader.bindings, group)?);
+        }
+        let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&pipeline.set_layouts);
+        // SAFETY: the set layouts are alive.
+        pipeline.layout =
+            unsafe { context.device.create_pipeline_layout(&info, None) }.during("vkCreatePipelineLayout")?;
+        pipeline.raw = compute_pipeline(context, shader, pipeline.layout)?;
+        context.name(pipeline.raw, &shader.name);
+        Ok(pipeline)
+    }
+}
+
+impl Drop for PipelineInner {
+    fn drop(&mut self) {
+        let device = &self.context.device;
+        // SAFETY: recordings keep what they use until it is done; null handles are ignored.
+        unsafe {
+            device.destroy_pipeline(self.raw, None);
+            device.destroy_pipeline_layout(self.layout, None);
+            for &layout in &self.set_layouts {
+                device.destroy_descriptor_set_layout(layout, None);
+            }
+        }
+    }
+}
+
+fn check(context: &Context, shader: &Shader) -> Result<(), GpuError> {
+    let refuse = |reason: String| Err(GpuError::Pipeline { pass: shader.name.clone(), reason });
+    let is_uniform = |binding: &&Binding| matches!(binding.kind, BindingKind::UniformBuffer { .. });
+    let uniforms = shader.bindings.iter().filter(is_uniform).count();
+    if uniforms > MAX_UNIFORM_BUFFERS {
+        return refuse(format!("{uniforms} uniform buffers; at most {MAX_UNIFORM_BUFFERS} are allowed"));
+    }
+    let limits = &context.info.limits;
+    let size = shader.workgroup_size;
+    let invocations = size.iter().map(|&n| u64::from(n)).product::<u64>();
+    let too_wide = size.iter().zip(limits.workgroup_size).any(|(&n, limit)| n > limit);
+    if too_wide || invocations > u64::from(limits.workgroup_invocations) {
+        let (sides, all) = (limits.workgroup_size, limits.workgroup_invocations);
+        return refuse(format!("workgroups of {size:?}; the device allows {sides:?}, and {all} invocations in all"));
+    }
+    Ok(())
+}
+
+fn set_layout(context: &Context, bindings: &[Binding], group: u32) -> Result<vk::DescriptorSetLayout, GpuError> {
+    let slot = |binding: &Binding| {
+        vk::DescriptorSetLayoutBinding::default()
+            .binding(binding.index)
+            .descriptor_type(descriptor_type(&binding.kind))
+            .descriptor_count(1)
+            .stage_flags(vk::ShaderStageFlags::COMPUTE)
+    };
+    let slots: Vec<_> = bindings.iter().filter(|binding| binding.group == group).map(slot).collect();
+    let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&slots);
+    // SAFETY: naga has checked that indices are unique.
+    unsafe { context.device.create_descriptor_set_layout(&info, None) }.during("vkCreateDescriptorSetLayout")
+}
+
+pub(crate) fn descriptor_type(kind: &BindingKind) -> vk::DescriptorType {
+    match kind {
+        BindingKind::UniformBuffer { .. } => vk::DescriptorType::UNIFORM_BUFFER,
+        BindingKind::StorageBuffer { .. } => vk::DescriptorType::STORAGE_BUFFER,
+        BindingKind::SampledTexture { .. } => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::StorageTexture { .. } => vk::DescriptorType::STORAGE_IMAGE,
+        BindingKind::Sampler => vk::DescriptorType::SAMPLER,
+    }
+}
+
+fn compute_pipeline(context: &Context, shader: &Shader, layout: vk::PipelineLayout) -> Result<vk::Pipeline, GpuError> {
+    let refuse = |reason: String| GpuError::Pipeline { pass: shader.name.clone(), reason };
+    let entry = std::ffi::CString::new(shader.entry_point.as_str()).map_err(|error| refuse(error.to_string()))?;
+    let code = vk::ShaderModuleCreateInfo::default().code(&shader.spirv);
+    let device = &context.device;
+    // SAFETY: the SPIR-V is naga's, from a module that it has validated.
+    let module = unsafe { device.create_shader_module(&code, None) }.during("vkCreateShaderModule")?;
+    let stage =
+        vk::PipelineShaderStageCreateInfo::default().stage(vk::ShaderStageFlags::COMPUTE).module(module).name(&entry);
+    let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout);
+    // SAFETY: module, entry point and layout are of the same pass.
+    let pipelines = unsafe { device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
+    // SAFETY: a pipeline needs its module only while it is made.
+    unsafe { device.destroy_shader_module(module, None) };
+    let pipelines = pipelines.map_err(|(_, result)| result).during("vkCreateComputePipelines")?;
+    pipelines.first().copied().ok_or_else(|| refuse("the driver returned no pipeline".to_owned()))
+}

@@ -1,0 +1,3 @@
+//! Files that pictures become.
+
+pub mod display;

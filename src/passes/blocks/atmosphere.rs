@@ -1,0 +1,153 @@
+//! The medium and the planet as the shaders read them.
+
+use std::f64::consts::PI;
+
+use bytemuck::{Pod, Zeroable};
+use welkin_lut::phase::DropletFit;
+use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
+
+use super::vec3;
+use crate::plan::Facts;
+
+/// Lobes that a constituent has room for: WGSL `MAX_LOBES`.
+const MAX_LOBES: usize = 2;
+
+/// WGSL `PhaseLobe`: scale (1 + quadratic ν²) (gap + slope (1 - ν))^(-exponent).
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+struct PhaseLobeBlock {
+    scale_per_sr: f32,
+    quadratic: f32,
+    gap: f32,
+    slope: f32,
+    exponent: f32,
+    padding: [f32; 3],
+}
+
+/// WGSL `Constituent`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+struct ConstituentBlock {
+    scattering_per_m: [f32; 3],
+    profile_a: f32,
+    extinction_per_m: [f32; 3],
+    profile_b: f32,
+    lobes: [PhaseLobeBlock; MAX_LOBES],
+}
+
+/// WGSL `Atmosphere` up to its array of constituents.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+struct AtmosphereHeader {
+    ground_albedo: [f32; 3],
+    radius_m: f32,
+    top_m: f32,
+    padding: [f32; 3],
+}
+
+impl PhaseLobeBlock {
+    /// Draine's function, of which Rayleigh's, Henyey-Greenstein's and Cornette-Shanks' are special cases.
+    fn draine(weight: f64, g: f64, alpha: f64) -> Self {
+        let norm = 4.0 * PI * (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
+        Self {
+            scale_per_sr: (weight * (1.0 - g * g) / norm) as f32,
+            quadratic: alpha as f32,
+            // 1 + g² - 2gν = (1 - g)² + 2g (1 - ν): the square is taken in f64, where it keeps its digits.
+            gap: ((1.0 - g) * (1.0 - g)) as f32,
+            slope: (2.0 * g) as f32,
+            exponent: 1.5,
+            padding: [0.0; 3],
+        }
+    }
+
+    fn schlick(k: f64) -> Self {
+        Self {
+            scale_per_sr: ((1.0 - k * k) / (4.0 * PI)) as f32,
+            quadratic: 0.0,
+            gap: (1.0 - k) as f32,
+            slope: k as f32,
+            exponent: 2.0,
+            padding: [0.0; 3],
+        }
+    }
+}
+
+/// The lobes of a phase function that has a closed form.
+fn lobes(phase: &PhaseFunction) -> Vec<PhaseLobeBlock> {
+    let draine = PhaseLobeBlock::draine;
+    match *phase {
+        PhaseFunction::Isotropic => vec![draine(1.0, 0.0, 0.0)],
+        PhaseFunction::Rayleigh => vec![draine(1.0, 0.0, 1.0)],
+        PhaseFunction::HenyeyGreenstein { g } => vec![draine(1.0, g, 0.0)],
+        PhaseFunction::DoubleHenyeyGreenstein { weight, g1, g2 } => {
+            vec![draine(weight, g1, 0.0), draine(1.0 - weight, g2, 0.0)]
+        }
+        PhaseFunction::Schlick { k } => vec![PhaseLobeBlock::schlick(k)],
+        PhaseFunction::CornetteShanks { g } => vec![draine(1.0, g, 1.0)],
+        PhaseFunction::Draine { g, alpha } => vec![draine(1.0, g, alpha)],
+        PhaseFunction::HenyeyGreensteinDraine { droplet_diameter_um } => {
+            let fit = DropletFit::new(droplet_diameter_um);
+            vec![draine(1.0 - fit.weight_draine, fit.g_hg, 0.0), draine(fit.weight_draine, fit.g_draine, fit.alpha)]
+        }
+        // The plan refuses tables; a constituent that only absorbs may carry one, and nobody reads it.
+        PhaseFunction::Tabulated(_) => vec![],
+    }
+}
+
+/// Lobes of the most complex phase function among the scatterers.
+pub fn lobe_count(facts: &Facts) -> u32 {
+    facts.scatterers().iter().map(|constituent| lobes(&constituent.phase).len() as u32).max().unwrap_or(0)
+}
+
+/// The two numbers of a density profile, as WGSL `Constituent` documents them.
+fn profile(profile: &DensityProfile) -> (f32, f32) {
+    match *profile {
+        DensityProfile::Exponential { scale_height_m } => {
+            ((-1.0 / (scale_height_m * std::f64::consts::LN_2)) as f32, 0.0)
+        }
+        DensityProfile::Tent { centre_m, half_width_m } => (centre_m as f32, (1.0 / half_width_m) as f32),
+        DensityProfile::Layer { bottom_m, top_m } => (bottom_m as f32, top_m as f32),
+    }
+}
+
+impl ConstituentBlock {
+    fn new(constituent: &Constituent) -> Self {
+        let (profile_a, profile_b) = profile(&constituent.profile);
+        let mut padded = [PhaseLobeBlock::zeroed(); MAX_LOBES];
+        for (slot, lobe) in padded.iter_mut().zip(lobes(&constituent.phase)) {
+            *slot = lobe;
+        }
+        // A lobe that is not there must still have a base whose logarithm is finite.
+        padded.iter_mut().filter(|lobe| lobe.gap == 0.0).for_each(|lobe| lobe.gap = 1.0);
+        Self {
+            scattering_per_m: vec3(constituent.scattering_per_m),
+            profile_a,
+            extinction_per_m: vec3(constituent.extinction_per_m()),
+            profile_b,
+            lobes: padded,
+        }
+    }
+}
+
+/// WGSL `Atmosphere`; vacuum keeps one empty slot.
+pub fn atmosphere_block(facts: &Facts) -> Vec<u8> {
+    let planet = &facts.scene.planet;
+    let header = AtmosphereHeader {
+        ground_albedo: vec3(planet.ground_albedo),
+        radius_m: planet.radius_m as f32,
+        top_m: planet.atmosphere_height_m as f32,
+        padding: [0.0; 3],
+    };
+    let mut constituents: Vec<_> = facts.constituents.iter().map(|c| ConstituentBlock::new(c)).collect();
+    constituents.resize(constituents.len().max(1), ConstituentBlock::zeroed());
+    [bytemuck::bytes_of(&header), bytemuck::cast_slice(&constituents)].concat()
+}
+
+/// χ_l of each scatterer, row by row; one zero when there is none.
+pub fn legendre_moments(facts: &Facts) -> Vec<f32> {
+    let degrees = facts.settings.degree_count as usize;
+    let moments = |c: &&Constituent| (0..degrees).map(|l| c.phase.legendre_moment(l) as f32).collect::<Vec<_>>();
+    let mut all: Vec<f32> = facts.scatterers().iter().flat_map(moments).collect();
+    all.resize(all.len().max(degrees), 0.0);
+    all
+}

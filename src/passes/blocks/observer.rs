@@ -1,0 +1,71 @@
+//! The observer and the lights as the shaders read them.
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+use welkin_lut::{BAND_WAVELENGTHS_NM, Bands};
+
+use super::vec3;
+use crate::plan::Facts;
+use crate::scene::DirectionalLight;
+
+/// WGSL `DirectionalLight`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+struct DirectionalLightBlock {
+    direction: [f32; 3],
+    azimuth_rad: f32,
+    irradiance: [f32; 3],
+    angular_radius_rad: f32,
+    limb_exponent: [f32; 3],
+    padding: f32,
+}
+
+/// WGSL `Observer` up to its array of lights.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+struct ObserverHeader {
+    altitude_m: f32,
+    horizon_rad: f32,
+    sky_end_rad: f32,
+    padding: f32,
+}
+
+/// Solar limb darkening I(μ) = μ^k, k = -0.023 + 0.292 µm / λ: Hestroffer & Magnan 1998, A&A 333, 338, eq. 5.
+fn solar_limb_exponent() -> Bands {
+    BAND_WAVELENGTHS_NM.map(|wavelength_nm| -0.023 + 292.0 / wavelength_nm)
+}
+
+impl DirectionalLightBlock {
+    fn new(light: &DirectionalLight) -> Self {
+        Self {
+            direction: light.direction.to_vector().as_vec3().to_array(),
+            azimuth_rad: wrapped_azimuth_rad(light.direction.to_vector()) as f32,
+            irradiance: vec3(light.irradiance),
+            angular_radius_rad: light.angular_radius_rad as f32,
+            limb_exponent: if light.limb_darkening { vec3(solar_limb_exponent()) } else { [0.0; 3] },
+            padding: 0.0,
+        }
+    }
+}
+
+/// Azimuth as the shaders' atan2 gives it, in [-π, π].
+fn wrapped_azimuth_rad(direction: DVec3) -> f64 {
+    direction.x.atan2(direction.y)
+}
+
+/// WGSL `Observer`, with one light that does not shine when there is none.
+pub fn observer_block(facts: &Facts) -> Vec<u8> {
+    let mapping = facts.sky_view_mapping();
+    let header = ObserverHeader {
+        altitude_m: facts.scene.camera.altitude_m.max(0.0) as f32,
+        padding: 0.0,
+        horizon_rad: mapping.horizon_rad as f32,
+        sky_end_rad: mapping.sky_end_rad as f32,
+    };
+    let mut lights: Vec<_> = facts.lights.iter().map(|light| DirectionalLightBlock::new(light)).collect();
+    lights.resize(
+        facts.light_slots() as usize,
+        DirectionalLightBlock { direction: [0.0, 0.0, 1.0], ..Zeroable::zeroed() },
+    );
+    [bytemuck::bytes_of(&header), bytemuck::cast_slice(&lights)].concat()
+}

@@ -1,0 +1,51 @@
+//! Linear radiance of every pixel.
+
+use super::{Pass, Recording, RenderError};
+use crate::gpu::{ImageFormat, ImageShape, Work};
+use crate::plan::{Declaration, Facts, Fingerprint, Need, Viewpoint};
+
+const NAME: &str = "compose";
+
+/// The pass.
+pub const PASS: Pass = Pass {
+    declaration: Declaration {
+        name: NAME,
+        need,
+        reads: &["optical_depth_table", "multiple_scattering_table", "sky_view_table"],
+        writes: &["radiance_image", "transmittance_image", "distance_image"],
+        inputs: |facts| {
+            let scene = facts.scene;
+            Fingerprint::of(&(&scene.camera, &facts.lights, &scene.planet, facts.outputs.capture))
+        },
+        bytes: |facts| {
+            let pixels = shape(facts).texels();
+            let capture = ImageFormat::Rgba32Float.texel_bytes() + ImageFormat::R32Float.texel_bytes();
+            pixels * (ImageFormat::Rgba32Float.texel_bytes() + if facts.outputs.capture { capture } else { 0 })
+        },
+    },
+    record,
+};
+
+fn shape(facts: &Facts) -> ImageShape {
+    ImageShape::D2(facts.scene.camera.width, facts.scene.camera.height)
+}
+
+fn need(facts: &Facts) -> Need {
+    if facts.viewpoint == Viewpoint::Underground {
+        return Need::NotNeeded(
+            "the camera is below the ground, where no light comes: the picture is black".to_owned(),
+        );
+    }
+    let camera = &facts.scene.camera;
+    Need::Needed(format!("{} x {} pixels", camera.width, camera.height))
+}
+
+fn record(recording: &mut Recording) -> Result<(), RenderError> {
+    let shape = shape(recording.facts);
+    recording.resources.image("radiance_image", shape, ImageFormat::Rgba32Float)?;
+    if recording.facts.outputs.capture {
+        recording.resources.image("transmittance_image", shape, ImageFormat::Rgba32Float)?;
+        recording.resources.image("distance_image", shape, ImageFormat::R32Float)?;
+    }
+    recording.dispatch(NAME, &[], &[], Work::Invocations(shape.extent()))
+}

@@ -1,0 +1,39 @@
+//! What shaders are specialised by: facts of the scene, and numbers of its settings.
+
+use welkin_shaders::{Definition, Definitions};
+
+use super::blocks::lobe_count;
+use crate::plan::Facts;
+use crate::probe::Orders;
+
+/// The definitions that every pass of a frame is compiled with.
+pub fn definitions(facts: &Facts) -> Definitions {
+    let (settings, groups, directions) = (&facts.settings, &facts.groups, &facts.settings.directions);
+    let numbers = [
+        ("CONSTITUENT_COUNT", groups.count),
+        ("SCATTERING_EXPONENTIAL_END", groups.scattering_exponential_end),
+        ("SCATTERING_TENT_END", groups.scattering_tent_end),
+        ("SCATTERER_COUNT", groups.scatterer_count),
+        ("ABSORBING_EXPONENTIAL_END", groups.absorbing_exponential_end),
+        ("ABSORBING_TENT_END", groups.absorbing_tent_end),
+        ("LOBE_COUNT", lobe_count(facts)),
+        ("LIGHT_COUNT", facts.light_slots()),
+        ("NODE_COUNT", settings.nodes_per_leg),
+        ("DEGREE_COUNT", settings.degree_count),
+        ("COEFFICIENT_COUNT", settings.coefficient_count()),
+        ("BELOW_COUNT", directions.below),
+        ("BAND_COUNT", directions.band),
+        ("ABOVE_COUNT", directions.above),
+        ("AZIMUTH_COUNT", directions.azimuths),
+        ("DIRECTION_COUNT", directions.count()),
+    ];
+    let flags = [
+        ("AIR", facts.has_air()),
+        ("GROUND", facts.orders == Orders::All),
+        ("MULTIPLE_SCATTERING", facts.has_multiple_scattering()),
+        ("CAPTURE", facts.outputs.capture),
+    ];
+    let numbers = numbers.map(|(name, value)| (name.to_owned(), Definition::U32(value)));
+    let flags = flags.map(|(name, value)| (name.to_owned(), Definition::Bool(value)));
+    numbers.into_iter().chain(flags).collect()
+}

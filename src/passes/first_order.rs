@@ -1,0 +1,62 @@
+//! Light scattered once, or reflected once by the ground, as spherical harmonics at every altitude and sun.
+
+use super::{Pass, Recording, RenderError};
+use crate::gpu::{ImageFormat, ImageShape, Work};
+use crate::plan::{Declaration, Facts, Fingerprint, Need, Viewpoint};
+use crate::probe::Orders;
+
+const NAME: &str = "first_order";
+
+/// The pass.
+pub const PASS: Pass = Pass {
+    declaration: Declaration {
+        name: NAME,
+        need,
+        reads: &["optical_depth_table"],
+        writes: &["first_order"],
+        inputs,
+        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+    },
+    record,
+};
+
+/// The table's shape: a layer for each coefficient and one for irradiance.
+pub(super) fn shape(facts: &Facts) -> ImageShape {
+    let [width, height] = facts.settings.multiple_scattering_size;
+    ImageShape::D2Array(width, height, facts.settings.coefficient_count() + 1)
+}
+
+/// One workgroup per texel.
+pub(super) fn work(facts: &Facts) -> Work {
+    let [width, height] = facts.settings.multiple_scattering_size;
+    Work::Workgroups([width, height, 1])
+}
+
+/// What all of the multiply scattered field depends on besides optical depth.
+pub(super) fn inputs(facts: &Facts) -> Fingerprint {
+    let settings = &facts.settings;
+    let sampling = (settings.directions, settings.degree_count, settings.multiple_scattering_size);
+    Fingerprint::of(&(facts.scene.planet.ground_albedo, settings.orders, sampling))
+}
+
+pub(super) fn need(facts: &Facts) -> Need {
+    let not_needed = |reason: &str| Need::NotNeeded(reason.to_owned());
+    if facts.viewpoint == Viewpoint::Underground {
+        return not_needed("the camera is below the ground");
+    }
+    if facts.lights.is_empty() {
+        return not_needed("no directional light shines");
+    }
+    if facts.scatterers().is_empty() {
+        return not_needed("no constituent scatters");
+    }
+    if facts.orders == Orders::Single {
+        return not_needed("only single scattering is asked for");
+    }
+    Need::Needed(format!("{} constituents scatter", facts.scatterers().len()))
+}
+
+fn record(recording: &mut Recording) -> Result<(), RenderError> {
+    recording.resources.image("first_order", shape(recording.facts), ImageFormat::Rgba32Float)?;
+    recording.dispatch(NAME, &[], &[], work(recording.facts))
+}

@@ -1,0 +1,61 @@
+//! One file per pass: what it declares to the plan, and how it is recorded.
+//!
+//! A pass's shader has the same stem. Shaders find their resources by name: what an earlier pass has left under a name
+//! is what a later one reads under it.
+
+pub mod blocks;
+mod compose;
+mod definitions;
+mod display;
+mod first_order;
+mod higher_order;
+mod optical_depth;
+mod probe;
+mod recording;
+mod resources;
+mod sky_view;
+
+pub use definitions::definitions;
+pub use probe::{download as download_answers, record as record_probe, upload as upload_rays};
+pub use recording::{Parameters, Recording};
+pub use resources::Resources;
+
+use crate::gpu::GpuError;
+use crate::plan::{Declaration, PlanError};
+use welkin_shaders::ShaderError;
+
+/// A pass: what the plan asks it, and how it is recorded.
+pub struct Pass {
+    /// What it says about itself.
+    pub declaration: Declaration,
+    /// Records its dispatches.
+    pub record: fn(&mut Recording) -> Result<(), RenderError>,
+}
+
+/// The tables that the sky is read from, in order.
+pub const TABLES: [Pass; 4] = [optical_depth::PASS, first_order::PASS, higher_order::PASS, sky_view::PASS];
+
+/// What makes a frame of them, in order.
+pub const FRAME: [Pass; 2] = [compose::PASS, display::PASS];
+
+/// Why a scene could not be rendered.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The scene asks for what the renderer cannot do.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A shader does not compile.
+    #[error(transparent)]
+    Shader(#[from] ShaderError),
+    /// The device failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The device cannot interpolate the tables.
+    #[error(
+        "device '{device}' cannot interpolate textures of 32-bit floats, which welkin's tables need; choose another with --device"
+    )]
+    NoLinearFilter {
+        /// Its name.
+        device: String,
+    },
+}

@@ -1,0 +1,52 @@
+//! Optical depth to the top of the atmosphere, for every altitude and direction above the horizon.
+
+use super::{Pass, Recording, RenderError};
+use crate::gpu::{ImageFormat, ImageShape, Work};
+use crate::plan::{Declaration, Facts, Fingerprint, Need, Viewpoint};
+
+const NAME: &str = "optical_depth";
+
+/// The pass.
+pub const PASS: Pass = Pass {
+    declaration: Declaration {
+        name: NAME,
+        need,
+        reads: &[],
+        writes: &["optical_depth_table"],
+        inputs: |facts| {
+            let planet = &facts.scene.planet;
+            let settings = &facts.settings;
+            let medium = &facts.constituents;
+            Fingerprint::of(&(
+                medium,
+                planet.radius_m,
+                planet.atmosphere_height_m,
+                settings.nodes_per_leg,
+                settings.optical_depth_size,
+            ))
+        },
+        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+    },
+    record,
+};
+
+fn shape(facts: &Facts) -> ImageShape {
+    let [width, height] = facts.settings.optical_depth_size;
+    ImageShape::D2(width, height)
+}
+
+fn need(facts: &Facts) -> Need {
+    if facts.viewpoint == Viewpoint::Underground {
+        return Need::NotNeeded(format!("the camera is {} m below the ground", -facts.scene.camera.altitude_m));
+    }
+    if !facts.has_air() {
+        return Need::NotNeeded("vacuum: no constituent absorbs or scatters".to_owned());
+    }
+    Need::Needed(format!("{} constituents weaken the light", facts.constituents.len()))
+}
+
+fn record(recording: &mut Recording) -> Result<(), RenderError> {
+    let shape = shape(recording.facts);
+    recording.resources.image("optical_depth_table", shape, ImageFormat::Rgba32Float)?;
+    recording.dispatch(NAME, &[], &[], Work::Invocations(shape.extent()))
+}

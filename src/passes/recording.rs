@@ -1,0 +1,105 @@
+//! A frame under construction: binds what shaders ask for by name.
+
+use std::collections::BTreeMap;
+
+use welkin_shaders::{Definition, Definitions};
+
+use super::blocks::{CameraBlock, atmosphere_block, cosine_nodes, gauss_nodes, legendre_moments, observer_block};
+use super::{RenderError, Resources, definitions};
+use crate::gpu::{Commands, GpuImage, Resource, Work};
+use crate::plan::Facts;
+
+/// Parameter blocks of a frame, by the names of the shaders' variables.
+pub struct Parameters(BTreeMap<&'static str, Vec<u8>>);
+
+impl Parameters {
+    /// Narrows all that the shaders read of a scene.
+    pub fn new(facts: &Facts) -> Self {
+        let bytes = |slice: &[_]| bytemuck::cast_slice(slice).to_vec();
+        Self(BTreeMap::from([
+            ("atmosphere", atmosphere_block(facts)),
+            ("gauss_nodes", bytes(&gauss_nodes(&facts.settings))),
+            ("cosine_nodes", bytes(&cosine_nodes(&facts.settings))),
+            ("observer", observer_block(facts)),
+            ("camera", bytemuck::bytes_of(&CameraBlock::new(&facts.scene.camera)).to_vec()),
+        ]))
+    }
+
+    /// Adds a block of one pass.
+    pub fn insert<T: bytemuck::NoUninit>(&mut self, name: &'static str, block: &T) {
+        self.0.insert(name, bytemuck::bytes_of(block).to_vec());
+    }
+}
+
+/// What passes record into.
+pub struct Recording<'a> {
+    /// What is known about the scene.
+    pub facts: &'a Facts<'a>,
+    /// What outlives the frame.
+    pub resources: &'a mut Resources,
+    parameters: Parameters,
+    definitions: Definitions,
+    commands: Commands,
+}
+
+impl<'a> Recording<'a> {
+    /// Starts a frame whose dispatches are timed.
+    pub fn new(label: &str, facts: &'a Facts<'a>, resources: &'a mut Resources) -> Result<Self, RenderError> {
+        // The one storage buffer among the parameters must be filled before recording starts.
+        resources.fill_buffer("legendre_moments", &legendre_moments(facts))?;
+        let commands = resources.gpu.record_timed(label)?;
+        Ok(Self { facts, resources, parameters: Parameters::new(facts), definitions: definitions(facts), commands })
+    }
+
+    /// Adds a parameter block of one pass.
+    pub fn insert_parameters<T: bytemuck::NoUninit>(&mut self, name: &'static str, block: &T) {
+        self.parameters.insert(name, block);
+    }
+
+    /// Records a dispatch of a pass's shader.
+    ///
+    /// `images` binds variables that have no lasting name; all others are found by theirs.
+    pub fn dispatch(
+        &mut self,
+        pass: &'static str,
+        flags: &[&str],
+        images: &[(&str, &GpuImage)],
+        work: Work,
+    ) -> Result<(), RenderError> {
+        let mut definitions = self.definitions.clone();
+        definitions.extend(flags.iter().map(|flag| ((*flag).to_owned(), Definition::Bool(true))));
+        let pipeline = self.resources.pipeline(pass, definitions)?;
+        let mut bound = Vec::with_capacity(pipeline.bindings().len());
+        for binding in pipeline.bindings() {
+            let name = binding.name.as_str();
+            if let Some(resource) = find(name, images, &self.parameters, self.resources) {
+                bound.push((name, resource));
+            }
+        }
+        Ok(self.commands.dispatch(&pipeline, &bound, work)?)
+    }
+
+    /// Runs what was recorded.
+    pub fn finish(self) -> Result<crate::gpu::Completed, RenderError> {
+        Ok(self.commands.submit_and_wait()?)
+    }
+}
+
+/// Whatever goes by a name; what goes by none is reported by the dispatch.
+fn find<'a>(
+    name: &str,
+    images: &[(&str, &'a GpuImage)],
+    parameters: &'a Parameters,
+    resources: &'a Resources,
+) -> Option<Resource<'a>> {
+    if let Some((_, image)) = images.iter().find(|(local, _)| *local == name) {
+        return Some(Resource::Image(image));
+    }
+    if name == "table_sampler" {
+        return Some(Resource::Sampler(resources.sampler()));
+    }
+    let data = parameters.0.get(name).map(|block| Resource::Data(block));
+    let image = || resources.existing_image(name).map(Resource::Image);
+    let buffer = || resources.existing_buffer(name).map(Resource::Buffer);
+    data.or_else(image).or_else(buffer)
+}

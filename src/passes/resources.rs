@@ -1,0 +1,94 @@
+//! What passes leave behind on the device, by name, and the pipelines that make it.
+
+use std::collections::{BTreeMap, HashMap};
+
+use welkin_shaders::{Definitions, compile};
+
+use super::RenderError;
+use crate::gpu::{
+    AddressMode, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, Pipeline, Sampler,
+};
+
+/// Images, buffers and pipelines that outlive a frame.
+pub struct Resources {
+    /// The device.
+    pub gpu: Gpu,
+    sampler: Sampler,
+    images: BTreeMap<&'static str, GpuImage>,
+    buffers: BTreeMap<&'static str, GpuBuffer>,
+    pipelines: HashMap<(&'static str, Definitions), Pipeline>,
+}
+
+impl Resources {
+    /// Nothing yet, but a device that can hold the tables.
+    ///
+    /// # Errors
+    /// [`RenderError::NoLinearFilter`] when the device cannot interpolate tables of 32-bit floats.
+    pub fn new(gpu: Gpu) -> Result<Self, RenderError> {
+        if gpu.filtering(ImageFormat::Rgba32Float) != Filtering::Linear {
+            return Err(RenderError::NoLinearFilter { device: gpu.info().name.clone() });
+        }
+        let sampler = gpu.sampler(Filter::Linear, [AddressMode::Clamp; 3])?;
+        Ok(Self { gpu, sampler, images: BTreeMap::new(), buffers: BTreeMap::new(), pipelines: HashMap::new() })
+    }
+
+    /// The image of a name, made anew unless it has this shape and format already.
+    pub fn image(&mut self, name: &'static str, shape: ImageShape, format: ImageFormat) -> Result<GpuImage, GpuError> {
+        if let Some(image) = self.images.get(name)
+            && (image.shape(), image.format()) == (shape, format)
+        {
+            return Ok(image.clone());
+        }
+        let image = self.gpu.image(name, shape, format)?;
+        self.images.insert(name, image.clone());
+        Ok(image)
+    }
+
+    /// Takes in an image that was made elsewhere.
+    pub fn keep(&mut self, name: &'static str, image: GpuImage) {
+        self.images.insert(name, image);
+    }
+
+    /// The image of a name, if a pass has left one.
+    pub fn existing_image(&self, name: &str) -> Option<&GpuImage> {
+        self.images.get(name)
+    }
+
+    /// Fills the storage buffer of a name.
+    pub fn fill_buffer<T: bytemuck::NoUninit>(&mut self, name: &'static str, content: &[T]) -> Result<(), GpuError> {
+        let bytes = size_of_val(content) as u64;
+        match self.buffers.get(name).filter(|buffer| buffer.bytes() == bytes) {
+            Some(buffer) => self.gpu.write_buffer(buffer, content),
+            None => {
+                self.buffers.insert(name, self.gpu.storage_buffer_of(name, content)?);
+                Ok(())
+            }
+        }
+    }
+
+    /// The buffer of a name, if it was filled.
+    pub fn existing_buffer(&self, name: &str) -> Option<&GpuBuffer> {
+        self.buffers.get(name)
+    }
+
+    /// The one sampler: linear, clamped.
+    pub fn sampler(&self) -> &Sampler {
+        &self.sampler
+    }
+
+    /// Frees what a skipped pass would have left.
+    pub fn release(&mut self, name: &str) {
+        self.images.remove(name);
+    }
+
+    /// The pipeline of a pass, specialised; compiled when it is asked for the first time.
+    pub fn pipeline(&mut self, pass: &'static str, definitions: Definitions) -> Result<Pipeline, RenderError> {
+        let key = (pass, definitions);
+        if let Some(pipeline) = self.pipelines.get(&key) {
+            return Ok(pipeline.clone());
+        }
+        let pipeline = self.gpu.pipeline(&compile(pass, &key.1)?)?;
+        self.pipelines.insert(key, pipeline.clone());
+        Ok(pipeline)
+    }
+}

@@ -1,0 +1,180 @@
+//! What the plan and the passes know about a scene, sorted the way the shaders want it.
+
+use welkin_lut::mapping::SkyViewMapping;
+use welkin_lut::{BAND_NAMES, Constituent, DensityProfile, PhaseFunction};
+
+use super::{PlanError, Settings};
+use crate::probe::Orders;
+use crate::scene::{DirectionalLight, Light, Scene};
+
+/// What is to come out of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Outputs {
+    /// Transmittance and distance beside radiance, for files and engines.
+    pub capture: bool,
+    /// An 8-bit picture to look at.
+    pub picture: bool,
+}
+
+/// Where the camera stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Viewpoint {
+    /// Inside the planet, where no light comes.
+    Underground,
+    /// Between the ground and the top of the atmosphere.
+    InAir,
+    /// Above the top.
+    InSpace,
+}
+
+/// Where each group of constituents ends in the sorted list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct ConstituentGroups {
+    /// Exponential profiles that scatter.
+    pub scattering_exponential_end: u32,
+    /// Then tents that scatter.
+    pub scattering_tent_end: u32,
+    /// Then layers that scatter: all that scatter end here.
+    pub scatterer_count: u32,
+    /// Exponential profiles that only absorb.
+    pub absorbing_exponential_end: u32,
+    /// Then tents that only absorb.
+    pub absorbing_tent_end: u32,
+    /// Then layers that only absorb: all end here.
+    pub count: u32,
+}
+
+/// A scene, a quality and a request, with what follows from them.
+#[derive(Debug, Clone)]
+pub struct Facts<'a> {
+    /// The scene itself.
+    pub scene: &'a Scene,
+    /// What the quality means.
+    pub settings: Settings,
+    /// Which orders of scattering are asked for.
+    pub orders: Orders,
+    /// What is to come out.
+    pub outputs: Outputs,
+    /// Constituents that do something to light, in the shaders' order.
+    pub constituents: Vec<&'a Constituent>,
+    /// The groups of that order.
+    pub groups: ConstituentGroups,
+    /// Directional lights that shine.
+    pub lights: Vec<&'a DirectionalLight>,
+    /// Where the camera stands.
+    pub viewpoint: Viewpoint,
+}
+
+impl<'a> Facts<'a> {
+    /// Looks a scene over.
+    ///
+    /// # Errors
+    /// [`PlanError::Unsupported`] for what the real-time renderer cannot do yet but the reference can.
+    pub fn new(scene: &'a Scene, settings: Settings, orders: Orders, outputs: Outputs) -> Result<Self, PlanError> {
+        let mut constituents: Vec<_> = scene.medium.constituents.iter().filter(|c| acts_on_light(c)).collect();
+        constituents.sort_by_key(|constituent| group_of(constituent));
+        for constituent in &constituents {
+            check_supported(constituent)?;
+        }
+        let camera = &scene.camera;
+        Ok(Self {
+            scene,
+            settings,
+            orders,
+            outputs,
+            groups: groups(&constituents),
+            constituents,
+            lights: shining_lights(scene)?,
+            viewpoint: match camera.altitude_m {
+                h if h < 0.0 => Viewpoint::Underground,
+                h if h <= scene.planet.atmosphere_height_m => Viewpoint::InAir,
+                _ => Viewpoint::InSpace,
+            },
+        })
+    }
+
+    /// Whether there is anything in the air.
+    pub fn has_air(&self) -> bool {
+        !self.constituents.is_empty()
+    }
+
+    /// Constituents that scatter.
+    pub fn scatterers(&self) -> &[&'a Constituent] {
+        &self.constituents[..self.groups.scatterer_count as usize]
+    }
+
+    /// Whether light of the second and later orders, and the ground's, belongs in the picture.
+    pub fn has_multiple_scattering(&self) -> bool {
+        self.orders == Orders::All && !self.scatterers().is_empty() && !self.lights.is_empty()
+    }
+
+    /// Lights that the shaders loop over; a dark scene keeps one slot.
+    pub fn light_slots(&self) -> u32 {
+        self.lights.len().max(1) as u32
+    }
+
+    /// Layers of the sky-view table.
+    pub fn sky_view_layers(&self) -> u32 {
+        2 * self.light_slots() * (2 + self.groups.scatterer_count)
+    }
+
+    /// How the sky-view table sees the sphere of directions.
+    pub fn sky_view_mapping(&self) -> SkyViewMapping {
+        SkyViewMapping::new(&self.scene.planet, self.scene.camera.altitude_m.max(0.0))
+    }
+}
+
+fn acts_on_light(constituent: &Constituent) -> bool {
+    constituent.extinction_per_m().iter().any(|&c| c > 0.0) || constituent.emits()
+}
+
+/// Sort key: scattering before absorbing, then by profile.
+fn group_of(constituent: &Constituent) -> (bool, u8) {
+    let profile = match constituent.profile {
+        DensityProfile::Exponential { .. } => 0,
+        DensityProfile::Tent { .. } => 1,
+        DensityProfile::Layer { .. } => 2,
+    };
+    (!constituent.scatters(), profile)
+}
+
+fn groups(sorted: &[&Constituent]) -> ConstituentGroups {
+    let end_of = |group: (bool, u8)| sorted.partition_point(|constituent| group_of(constituent) <= group) as u32;
+    ConstituentGroups {
+        scattering_exponential_end: end_of((false, 0)),
+        scattering_tent_end: end_of((false, 1)),
+        scatterer_count: end_of((false, 2)),
+        absorbing_exponential_end: end_of((true, 0)),
+        absorbing_tent_end: end_of((true, 1)),
+        count: end_of((true, 2)),
+    }
+}
+
+fn check_supported(constituent: &Constituent) -> Result<(), PlanError> {
+    let unsupported =
+        |what: &str| Err(PlanError::Unsupported { what: format!("constituent '{}' {what}", constituent.name) });
+    if let Some(band) = constituent.emission_per_m.iter().position(|&e| e > 0.0) {
+        return unsupported(&format!("emits light in band {}", BAND_NAMES[band]));
+    }
+    if constituent.scatters() && matches!(constituent.phase, PhaseFunction::Tabulated(_)) {
+        return unsupported("has a tabulated phase function");
+    }
+    Ok(())
+}
+
+fn shining_lights(scene: &Scene) -> Result<Vec<&DirectionalLight>, PlanError> {
+    let mut lights = Vec::new();
+    for light in &scene.lights {
+        match light {
+            Light::Directional(light) if light.irradiance.iter().any(|&e| e > 0.0) => lights.push(light),
+            Light::Directional(_) => {}
+            Light::Point(light) => {
+                return Err(PlanError::Unsupported { what: format!("light '{}' is a point light", light.name) });
+            }
+            Light::Environment(_) => {
+                return Err(PlanError::Unsupported { what: "the scene has an environment light".to_owned() });
+            }
+        }
+    }
+    Ok(lights)
+}

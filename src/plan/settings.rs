@@ -1,0 +1,164 @@
+//! What a quality means in numbers: everything that trades accuracy for time.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// How much accuracy a picture is worth. The error of each is measured in docs/accuracy.md.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Quality {
+    /// For weak devices.
+    Low,
+    /// The default: right to a few per cent everywhere.
+    #[default]
+    Medium,
+    /// Right to within a per cent nearly everywhere.
+    High,
+    /// As close to the truth as the methods come.
+    Ultra,
+}
+
+impl Quality {
+    /// From the cheapest to the dearest.
+    pub const ALL: [Self; 4] = [Self::Low, Self::Medium, Self::High, Self::Ultra];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Low => "low",
+            Self::Medium => "medium",
+            Self::High => "high",
+            Self::Ultra => "ultra",
+        }
+    }
+}
+
+impl fmt::Display for Quality {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+/// A quality of that name does not exist.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("quality is '{0}'; it must be one of low, medium, high, ultra")]
+pub struct UnknownQuality(String);
+
+impl FromStr for Quality {
+    type Err = UnknownQuality;
+
+    fn from_str(name: &str) -> Result<Self, UnknownQuality> {
+        Self::ALL.into_iter().find(|quality| quality.name() == name).ok_or_else(|| UnknownQuality(name.to_owned()))
+    }
+}
+
+/// Cosines and azimuths in which a radiance field is sampled; their product is a workgroup's invocations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Directions {
+    /// Gauss nodes below the horizon.
+    pub below: u32,
+    /// Gauss nodes between the horizon and the horizontal.
+    pub band: u32,
+    /// Gauss nodes above the horizontal.
+    pub above: u32,
+    /// Midpoints on half a turn.
+    pub azimuths: u32,
+}
+
+impl Directions {
+    /// All directions; at most 128, which every Vulkan device takes in one workgroup.
+    pub fn count(&self) -> u32 {
+        (self.below + self.band + self.above) * self.azimuths
+    }
+}
+
+/// Everything that trades accuracy for time. Sizes are (columns, rows) in texels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Settings {
+    /// Gauss-Legendre nodes on each leg of a ray.
+    pub nodes_per_leg: u32,
+    /// Optical depth: (direction, altitude).
+    pub optical_depth_size: [u32; 2],
+    /// Multiple scattering: (sun, altitude).
+    pub multiple_scattering_size: [u32; 2],
+    /// Degrees 0 .. n-1 of spherical harmonics that the field keeps: 3 or 5.
+    pub degree_count: u32,
+    /// Directions in which each texel's field is sampled.
+    pub directions: Directions,
+    /// Orders of scattering that are computed one by one, at least 3; the rest of the series is geometric.
+    pub orders: u32,
+    /// Sky view, each half: (azimuth, elevation).
+    pub sky_view_size: [u32; 2],
+}
+
+impl Settings {
+    /// The preset of a quality.
+    pub fn of(quality: Quality) -> Self {
+        match quality {
+            Quality::Low => Self {
+                nodes_per_leg: 8,
+                optical_depth_size: [128, 48],
+                multiple_scattering_size: [32, 16],
+                degree_count: 3,
+                directions: Directions { below: 3, band: 2, above: 4, azimuths: 4 },
+                orders: 3,
+                sky_view_size: [32, 48],
+            },
+            Quality::Medium => Self {
+                nodes_per_leg: 10,
+                optical_depth_size: [256, 64],
+                multiple_scattering_size: [48, 24],
+                degree_count: 3,
+                directions: Directions { below: 4, band: 3, above: 5, azimuths: 6 },
+                orders: 3,
+                sky_view_size: [48, 96],
+            },
+            Quality::High => Self {
+                nodes_per_leg: 12,
+                optical_depth_size: [256, 128],
+                multiple_scattering_size: [64, 32],
+                degree_count: 3,
+                directions: Directions { below: 4, band: 3, above: 5, azimuths: 8 },
+                orders: 3,
+                sky_view_size: [64, 128],
+            },
+            Quality::Ultra => Self {
+                nodes_per_leg: 16,
+                optical_depth_size: [512, 128],
+                multiple_scattering_size: [96, 32],
+                degree_count: 5,
+                directions: Directions { below: 5, band: 3, above: 6, azimuths: 8 },
+                orders: 4,
+                sky_view_size: [96, 192],
+            },
+        }
+    }
+
+    /// Coefficients (l, m), m ≥ 0, of the field.
+    pub fn coefficient_count(&self) -> u32 {
+        self.degree_count * (self.degree_count + 1) / 2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_quality_fits_the_smallest_vulkan_device() {
+        for quality in Quality::ALL {
+            let settings = Settings::of(quality);
+            // maxComputeWorkGroupInvocations is at least 128, and each coefficient needs an invocation.
+            assert!(settings.directions.count() <= 128, "{quality}");
+            assert!(settings.coefficient_count() <= settings.directions.count(), "{quality}");
+            assert!(settings.orders >= 3, "{quality}: the ratio of orders is constant only after the third");
+        }
+    }
+
+    #[test]
+    fn a_quality_is_known_by_its_name() {
+        for quality in Quality::ALL {
+            assert_eq!(quality.name().parse(), Ok(quality));
+        }
+        assert!("best".parse::<Quality>().is_err());
+    }
+}

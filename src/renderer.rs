@@ -1,0 +1,173 @@
+//! Runs a plan on a device: no physics, no Vulkan.
+
+use std::collections::BTreeMap;
+
+use crate::frame::Frame;
+use crate::gpu::{Clock, DeviceRequest, Gpu};
+use crate::passes::{self, FRAME, Pass, Recording, RenderError, Resources, TABLES, record_probe};
+use crate::plan::{Decision, Facts, History, Outputs, Plan, Settings, Viewpoint};
+use crate::probe::{Orders, Ray, RayRadiance};
+use crate::scene::{Light, Scene};
+
+/// Renders scenes on one device; what one frame has computed, the next reuses.
+pub struct Renderer {
+    resources: Resources,
+    history: History,
+}
+
+/// A frame with what it took.
+pub struct Rendered {
+    /// Linear radiance, transmittance and distance; without a capture only radiance is filled.
+    pub frame: Frame,
+    /// sRGB bytes, three a pixel, when a picture was asked for.
+    pub picture: Option<Vec<u8>>,
+    /// What each pass took.
+    pub timings: Timings,
+}
+
+/// What a plan's execution took.
+#[derive(Debug, Clone)]
+pub struct Timings {
+    /// The plan.
+    pub plan: Plan,
+    /// Milliseconds of each pass that ran, by name.
+    pub milliseconds: BTreeMap<String, f64>,
+    /// What they were taken with.
+    pub clock: Option<Clock>,
+}
+
+impl Renderer {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] when there is none that can be used; [`RenderError::NoLinearFilter`].
+    pub fn new(request: &DeviceRequest) -> Result<Self, RenderError> {
+        Ok(Self { resources: Resources::new(Gpu::new(request)?)?, history: History::default() })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.resources.gpu
+    }
+
+    /// Renders what the scene's camera sees.
+    ///
+    /// # Errors
+    /// [`RenderError::Plan`] when the scene asks for more than the renderer can do; device and shader errors.
+    pub fn render(&mut self, scene: &Scene, settings: Settings, outputs: Outputs) -> Result<Rendered, RenderError> {
+        let facts = Facts::new(scene, settings, Orders::All, outputs)?;
+        let passes: Vec<_> = TABLES.iter().chain(&FRAME).collect();
+        let timings = self.execute("frame", &facts, &passes, 0)?;
+        let (frame, picture) = self.read_back(&facts)?;
+        Ok(Rendered { frame, picture, timings })
+    }
+
+    /// Radiance along rays, each from its own altitude under its own sun: the scene's first directional light, moved
+    /// there. Other directional lights are left out.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn probe(
+        &mut self,
+        scene: &Scene,
+        settings: Settings,
+        rays: &[Ray],
+        orders: Orders,
+    ) -> Result<Vec<RayRadiance>, RenderError> {
+        let mut answers =
+            vec![RayRadiance { radiance: [0.0; 3], transmittance: [0.0; 3], standard_error: [0.0; 3] }; rays.len()];
+        for group in groups_of_one_view(rays) {
+            let seen_from = scene_for_ray(scene, &rays[group[0]]);
+            let facts = Facts::new(&seen_from, settings, orders, Outputs::default())?;
+            if facts.viewpoint == Viewpoint::Underground {
+                continue;
+            }
+            let group_rays: Vec<_> = group.iter().map(|&index| rays[index]).collect();
+            passes::upload_rays(&mut self.resources, &group_rays, &facts.sky_view_mapping())?;
+            self.execute("probe", &facts, &TABLES.iter().collect::<Vec<_>>(), group.len())?;
+            for (index, answer) in group.into_iter().zip(passes::download_answers(&self.resources)?) {
+                answers[index] = answer;
+            }
+        }
+        Ok(answers)
+    }
+
+    /// Plans and runs passes, and then a probe of so many rays.
+    fn execute(&mut self, label: &str, facts: &Facts, passes: &[&Pass], rays: usize) -> Result<Timings, RenderError> {
+        let declarations: Vec<_> = passes.iter().map(|pass| pass.declaration).collect();
+        let plan = Plan::new(facts, &self.history, &declarations);
+        for pass in passes.iter().filter(|pass| plan.decision(pass.declaration.name) == Some(Decision::Skip)) {
+            pass.declaration.writes.iter().for_each(|name| self.resources.release(name));
+        }
+        let mut recording = Recording::new(label, facts, &mut self.resources)?;
+        for pass in passes.iter().filter(|pass| plan.decision(pass.declaration.name) == Some(Decision::Run)) {
+            (pass.record)(&mut recording)?;
+        }
+        if rays > 0 {
+            record_probe(&mut recording, rays)?;
+        }
+        let completed = recording.finish()?;
+        self.history.record(&plan);
+        let mut milliseconds = BTreeMap::new();
+        for time in completed.times {
+            *milliseconds.entry(time.label).or_insert(0.0) += time.milliseconds;
+        }
+        Ok(Timings { plan, milliseconds, clock: completed.clock })
+    }
+
+    fn read_back(&self, facts: &Facts) -> Result<(Frame, Option<Vec<u8>>), RenderError> {
+        let camera = &facts.scene.camera;
+        let mut frame = Frame::new(camera.width, camera.height);
+        let image = |name| self.resources.existing_image(name);
+        let rgb = |texels: Vec<[f32; 4]>| texels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect::<Vec<_>>();
+        if facts.viewpoint == Viewpoint::Underground {
+            frame.transmittance.fill([0.0; 3]);
+            frame.distance_m.fill(0.0);
+            let black = vec![0; 3 * frame.radiance.len()];
+            return Ok((frame, facts.outputs.picture.then_some(black)));
+        }
+        if let Some(radiance) = image("radiance_image") {
+            frame.radiance = rgb(self.gpu().read_image(radiance)?);
+        }
+        if facts.outputs.capture
+            && let (Some(transmittance), Some(distance)) = (image("transmittance_image"), image("distance_image"))
+        {
+            frame.transmittance = rgb(self.gpu().read_image(transmittance)?);
+            frame.distance_m = self.gpu().read_image(distance)?;
+        }
+        let mut picture = None;
+        if facts.outputs.picture
+            && let Some(image) = image("picture_image")
+        {
+            let texels: Vec<[u8; 4]> = self.gpu().read_image(image)?;
+            picture = Some(texels.into_iter().flat_map(|[r, g, b, _]| [r, g, b]).collect());
+        }
+        Ok((frame, picture))
+    }
+}
+
+/// Indices of rays that share altitude and sun, and so a sky-view table.
+fn groups_of_one_view(rays: &[Ray]) -> Vec<Vec<usize>> {
+    let mut groups: BTreeMap<(u64, u64), Vec<usize>> = BTreeMap::new();
+    for (index, ray) in rays.iter().enumerate() {
+        groups.entry((ray.altitude_m.to_bits(), ray.sun_zenith_rad.to_bits())).or_default().push(index);
+    }
+    groups.into_values().collect()
+}
+
+/// The scene with its camera and its first directional light where a ray has them.
+fn scene_for_ray(scene: &Scene, ray: &Ray) -> Scene {
+    let mut scene = scene.clone();
+    scene.camera.altitude_m = ray.altitude_m;
+    let first = scene.lights.iter().find_map(|light| match light {
+        Light::Directional(light) => Some(light.clone()),
+        _ => None,
+    });
+    scene.lights.retain(|light| !matches!(light, Light::Directional(_)));
+    if let Some(mut light) = first {
+        light.direction.elevation_rad = std::f64::consts::FRAC_PI_2 - ray.sun_zenith_rad;
+        light.direction.azimuth_rad = ray.sun_azimuth_rad;
+        scene.lights.push(Light::Directional(light));
+    }
+    scene
+}
