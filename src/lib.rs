@@ -7,4 +7,5 @@ pub mod passes;
 pub mod plan;
 pub mod probe;
 pub mod renderer;
+pub mod reference;
 pub mod scene;

@@ -1,0 +1,157 @@
+//! Matter that depends on altitude alone: a planet's air, or a layer over a plane.
+
+use welkin_lut::{Bands, Constituent, DensityProfile};
+
+use super::column::{Columns, Weighted};
+use super::line::Line;
+use super::matter::{Local, Matter};
+use super::shape::Shape;
+use super::spectrum;
+
+/// Largest optical depth, seen vertically, by which a shell's majorant may exceed its matter.
+const SHELL_EXCESS: f64 = 0.01;
+
+/// Constituents over one shape, with what is needed to walk through them and to integrate along rays.
+#[derive(Debug, Clone)]
+pub struct Air {
+    matter: Vec<Matter>,
+    profiles: Vec<DensityProfile>,
+    columns: Columns,
+    /// Shells from the ground up: (lower altitude m, majorant 1/m).
+    shells: Vec<(f64, f64)>,
+    height_m: f64,
+    emits: bool,
+}
+
+/// A place at which a walk may collide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tentative {
+    /// Distance along the line, m.
+    pub t_m: f64,
+    /// Rate of tentative collisions there, 1/m.
+    pub majorant_per_m: f64,
+}
+
+impl Air {
+    /// The constituents between the ground and the top of `shape`.
+    pub fn new(shape: &Shape, constituents: &[Constituent]) -> Self {
+        let matter: Vec<Matter> = constituents.iter().map(Matter::from).collect();
+        let profiles: Vec<DensityProfile> = constituents.iter().map(|c| c.profile).collect();
+        let weighted: Vec<Weighted> = profiles
+            .iter()
+            .zip(&matter)
+            .map(|(&profile, m)| Weighted { profile, coefficient_per_m: spectrum::largest(m.extinction_per_m) })
+            .collect();
+        let height_m = match *shape {
+            Shape::Sphere { height_m, .. } | Shape::Plane { height_m } => height_m,
+            Shape::Box { min_m, max_m } => max_m.z - min_m.z,
+        };
+        let columns = Columns::new(shape.radius_m(), height_m, &weighted);
+        let emits = constituents.iter().any(Constituent::emits);
+        let mut air = Self { matter, profiles, columns, shells: Vec::new(), height_m, emits };
+        air.shells = air.cut_shells();
+        air
+    }
+
+    /// Whether it holds nothing at all.
+    pub fn is_empty(&self) -> bool {
+        self.matter.is_empty()
+    }
+
+    /// Whether any constituent emits.
+    pub fn emits(&self) -> bool {
+        self.emits
+    }
+
+    /// The constituents, in the order of the densities.
+    pub fn matter(&self) -> &[Matter] {
+        &self.matter
+    }
+
+    /// Altitudes at which a profile has a kink, and others at which quadrature does well to split, m.
+    pub fn cuts_m(&self) -> impl Iterator<Item = f64> + '_ {
+        self.columns.cuts_m()
+    }
+
+    /// The matter at an altitude; `density` receives the densities.
+    pub fn local<'a>(&'a self, altitude_m: f64, density: &'a mut Vec<f64>) -> Local<'a> {
+        density.clear();
+        density.extend(self.profiles.iter().map(|profile| profile.density(altitude_m)));
+        Local { matter: &self.matter, density }
+    }
+
+    /// Optical depth between two distances along a line, by [`Columns`].
+    pub fn optical_depth(&self, line: &Line, from_m: f64, to_m: f64) -> Bands {
+        let mut buffer = [0.0; 16];
+        let mut heap = Vec::new();
+        let columns = if self.profiles.len() <= buffer.len() {
+            &mut buffer[..self.profiles.len()]
+        } else {
+            heap.resize(self.profiles.len(), 0.0);
+            &mut heap
+        };
+        self.columns.add(line, from_m, to_m, columns);
+        Local { matter: &self.matter, density: columns }.extinction()
+    }
+
+    /// The next tentative collision between two distances: a Poisson process whose rate is constant in each shell
+    /// and nowhere below the extinction of any band.
+    pub fn tentative(&self, line: &Line, from_m: f64, to_m: f64, unit_exponential: f64) -> Option<Tentative> {
+        let mut remaining = unit_exponential;
+        let mut t = from_m;
+        let mut falling = t < line.lowest();
+        let mut shell = self.shell_at(line.altitude(t));
+        loop {
+            let (low, majorant) = self.shells[shell];
+            let fall = if falling { line.fall(low) } else { None };
+            let leaves = match fall {
+                Some(distance) => distance,
+                None => {
+                    falling = false;
+                    line.rise(self.shells.get(shell + 1).map_or(self.height_m, |s| s.0)).unwrap_or(t)
+                }
+            };
+            let depth = (leaves.min(to_m) - t).max(0.0) * majorant;
+            if depth > remaining {
+                return Some(Tentative { t_m: t + remaining / majorant, majorant_per_m: majorant });
+            }
+            remaining -= depth;
+            t = leaves.max(t);
+            let next = if falling { shell.checked_sub(1) } else { Some(shell + 1) };
+            match next {
+                Some(next) if next < self.shells.len() && t < to_m => shell = next,
+                _ => return None,
+            }
+        }
+    }
+
+    fn shell_at(&self, altitude_m: f64) -> usize {
+        self.shells.partition_point(|s| s.0 <= altitude_m).saturating_sub(1)
+    }
+
+    /// Halves shells until the majorant is close to the matter.
+    fn cut_shells(&self) -> Vec<(f64, f64)> {
+        let cuts: Vec<f64> = self.cuts_m().collect();
+        let mut pending: Vec<(f64, f64)> = cuts.windows(2).map(|ends| (ends[0], ends[1])).rev().collect();
+        let mut shells = Vec::new();
+        while let Some((low, high)) = pending.pop() {
+            let bound = |of: fn(&DensityProfile, f64, f64) -> f64| -> f64 {
+                let mut total = spectrum::ZERO;
+                for (matter, profile) in self.matter.iter().zip(&self.profiles) {
+                    spectrum::accumulate(&mut total, of(profile, low, high), matter.extinction_per_m);
+                }
+                spectrum::largest(total)
+            };
+            let (most, least) = (bound(DensityProfile::majorant), bound(DensityProfile::minorant));
+            let close = (most - least) * (high - low) <= SHELL_EXCESS || least >= 0.9 * most;
+            if close || high - low < 1e-6 * self.height_m {
+                shells.push((low, most));
+            } else {
+                let middle = 0.5 * (low + high);
+                pending.push((middle, high));
+                pending.push((low, middle));
+            }
+        }
+        shells
+    }
+}

@@ -1,0 +1,157 @@
+//! Sources of light as an estimator sees them: sampled directions, radiance, probability densities.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+use welkin_lut::Bands;
+
+use super::matter::around;
+use crate::scene::Light;
+
+/// A source outside the medium.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Emitter {
+    /// Exactly parallel rays.
+    Beam {
+        /// Unit vector to the source.
+        toward: DVec3,
+        /// On a plane normal to the beam, W·m⁻²·nm⁻¹.
+        irradiance: Bands,
+    },
+    /// A disc at infinity.
+    Disc {
+        /// Unit vector to its centre.
+        toward: DVec3,
+        /// On a plane normal to its centre, W·m⁻²·nm⁻¹.
+        irradiance: Bands,
+        /// Angular radius, rad.
+        radius_rad: f64,
+        /// Whether it darkens towards its limb.
+        limb_darkening: bool,
+    },
+    /// A point.
+    Point {
+        /// Where, m.
+        position_m: DVec3,
+        /// W·sr⁻¹·nm⁻¹.
+        intensity: Bands,
+    },
+    /// Uniform surroundings.
+    Environment {
+        /// W·m⁻²·sr⁻¹·nm⁻¹.
+        radiance: Bands,
+    },
+}
+
+/// One direction towards a light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightSample {
+    /// Unit vector towards the light.
+    pub direction: DVec3,
+    /// Distance to the light, m; infinite outside the world.
+    pub distance_m: f64,
+    /// Radiance over probability density: what a unit of response per steradian receives, W·m⁻²·nm⁻¹.
+    pub irradiance: Bands,
+    /// Density of this direction per steradian; `None` when no other way of sampling can find it.
+    pub pdf_per_sr: Option<f64>,
+}
+
+/// 1 - cos of a disc's angular radius, without cancellation.
+fn disc_height(radius_rad: f64) -> f64 {
+    2.0 * (0.5 * radius_rad).sin().powi(2)
+}
+
+/// Radiance of the sun's disc relative to its mean, at the squared sine of the angle from the disc's centre relative
+/// to that of its limb: I ∝ 1 - u (1 - cos ψ) with u = 0.6, the linear law for visible light (Cox, Allen's
+/// Astrophysical Quantities, 2000), whose disc average is 1 - u/3.
+fn limb_factor(relative_squared: f64) -> f64 {
+    const U: f64 = 0.6;
+    (1.0 - U * (1.0 - (1.0 - relative_squared).max(0.0).sqrt())) / (1.0 - U / 3.0)
+}
+
+impl Emitter {
+    /// The scene's light.
+    pub fn new(light: &Light) -> Self {
+        match light {
+            Light::Directional(sun) if sun.angular_radius_rad == 0.0 => {
+                Self::Beam { toward: sun.direction.to_vector(), irradiance: sun.irradiance }
+            }
+            Light::Directional(sun) => Self::Disc {
+                toward: sun.direction.to_vector(),
+                irradiance: sun.irradiance,
+                radius_rad: sun.angular_radius_rad,
+                limb_darkening: sun.limb_darkening,
+            },
+            Light::Point(point) => Self::Point { position_m: point.position_m, intensity: point.intensity },
+            Light::Environment(sky) => Self::Environment { radiance: sky.radiance },
+        }
+    }
+
+    /// Where a directional light stands.
+    pub fn toward(&self) -> Option<DVec3> {
+        match *self {
+            Self::Beam { toward, .. } | Self::Disc { toward, .. } => Some(toward),
+            _ => None,
+        }
+    }
+
+    /// The same light, standing elsewhere if it is directional.
+    pub fn moved(&self, direction: DVec3) -> Self {
+        let mut light = self.clone();
+        if let Self::Beam { toward, .. } | Self::Disc { toward, .. } = &mut light {
+            *toward = direction;
+        }
+        light
+    }
+
+    /// A direction from `p` to the light, from two numbers in [0, 1[.
+    pub fn sample(&self, p: DVec3, u: f64, v: f64) -> LightSample {
+        match *self {
+            Self::Beam { toward, irradiance } => {
+                LightSample { direction: toward, distance_m: f64::INFINITY, irradiance, pdf_per_sr: None }
+            }
+            Self::Disc { toward, radius_rad, .. } => {
+                let height = disc_height(radius_rad);
+                let direction = around(toward, 1.0 - u * height, v).normalize();
+                let pdf = 1.0 / (TAU * height);
+                let irradiance = self.disc_radiance_at(u).map(|l| l / pdf);
+                LightSample { direction, distance_m: f64::INFINITY, irradiance, pdf_per_sr: Some(pdf) }
+            }
+            Self::Point { position_m, intensity } => {
+                let offset = position_m - p;
+                let squared = offset.length_squared();
+                let distance_m = squared.sqrt();
+                let irradiance = intensity.map(|i| i / squared);
+                LightSample { direction: offset / distance_m, distance_m, irradiance, pdf_per_sr: None }
+            }
+            Self::Environment { radiance } => {
+                let direction = around(DVec3::Z, 1.0 - 2.0 * u, v);
+                let irradiance = radiance.map(|l| l * 4.0 * PI);
+                LightSample { direction, distance_m: f64::INFINITY, irradiance, pdf_per_sr: Some(0.25 / PI) }
+            }
+        }
+    }
+
+    /// Radiance of a disc where 1 - cos of the angle from its centre is `relative_height` times that of its limb.
+    fn disc_radiance_at(&self, relative_height: f64) -> Bands {
+        let Self::Disc { irradiance, radius_rad, limb_darkening, .. } = *self else { return [0.0; 3] };
+        // A uniform disc of radiance L gives π sin²α L on a plane normal to its centre.
+        let projected = PI * radius_rad.sin().powi(2);
+        let factor = if limb_darkening { limb_factor(relative_height) } else { 1.0 };
+        irradiance.map(|e| factor * e / projected)
+    }
+
+    /// Radiance arriving from a direction of space, and the density with which `sample` would choose it; `None` when
+    /// the light is not there or cannot be hit.
+    pub fn radiance(&self, direction: DVec3) -> Option<(Bands, f64)> {
+        match *self {
+            Self::Environment { radiance } => Some((radiance, 0.25 / PI)),
+            Self::Disc { toward, radius_rad, .. } => {
+                let height = 0.5 * (direction - toward).length_squared();
+                let limb = disc_height(radius_rad);
+                (height <= limb).then(|| (self.disc_radiance_at(height / limb), 1.0 / (TAU * limb)))
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! The truth: the light transport equation on the CPU in `f64`, without tables, mappings or a GPU.
+//!
+//! It shares the problem with the renderer (scene, medium, phase functions) and nothing of its solution. Three
+//! solvers answer the same questions: [`single`] (a, quadrature of single scattering with an error bound),
+//! `marching` (b, recursive Monte Carlo ray marching) and [`path`] (c, an unbiased path tracer).
+//!
+//! Walks run against the light, from the camera. Equations are those of Premože 2003, sections 4.1 and 4.2.
+
+mod air;
+mod column;
+mod field;
+mod first_event;
+mod guide;
+mod light;
+mod line;
+mod matter;
+pub mod path;
+pub mod probe;
+mod quadrature;
+mod random;
+mod shape;
+pub mod single;
+mod spectrum;
+mod tally;
+pub mod transport;
+mod walk;
+mod world;
+
+pub use field::{Body, DensityField};
+pub use light::Emitter;
+pub use matter::Matter;
+pub use probe::{Effort, probe};
+pub use quadrature::Integral;
+pub use shape::Shape;
+pub use tally::{ORDER_BINS, Tally};
+pub use world::World;
