@@ -15,6 +15,7 @@ mod light;
 mod line;
 mod matter;
 pub mod path;
+pub mod picture;
 pub mod probe;
 mod quadrature;
 mod random;
