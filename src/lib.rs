@@ -6,6 +6,6 @@ pub mod output;
 pub mod passes;
 pub mod plan;
 pub mod probe;
-pub mod renderer;
 pub mod reference;
+pub mod renderer;
 pub mod scene;

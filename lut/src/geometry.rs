@@ -20,13 +20,10 @@ pub fn altitude_along(radius_m: f64, altitude_m: f64, mu: f64, distance_m: f64) 
 
 /// Distance to a sphere at `shell_m` above the ground, seen from inside it: the one positive root.
 ///
-/// Zero when the ray starts at or above the shell.
+/// A start above the shell counts as lying on it: zero upwards, the chord downwards.
 pub fn distance_to_shell_from_below(radius_m: f64, altitude_m: f64, mu: f64, shell_m: f64) -> f64 {
     let r = radius_m + altitude_m;
-    let gap = (shell_m - altitude_m) * (2.0 * radius_m + shell_m + altitude_m);
-    if gap <= 0.0 {
-        return 0.0;
-    }
+    let gap = ((shell_m - altitude_m) * (2.0 * radius_m + shell_m + altitude_m)).max(0.0);
     let b = r * mu;
     let root = (b * b + gap).sqrt();
     // The form without cancellation on either side of the horizontal.

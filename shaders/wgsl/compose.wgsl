@@ -23,7 +23,7 @@ fn relative_to_light(view: vec3<f32>, light: u32) -> SkyDirection {
     let turn_rad = abs(atan2(view.x, view.y) - observer.lights[light].azimuth_rad);
     direction.azimuth_rad = min(turn_rad, 2.0 * PI - turn_rad);
     direction.nu = clamp(dot(view, observer.lights[light].direction), -1.0, 1.0);
-    direction.below_horizon = direction.zenith_rad > observer.horizon_rad;
+    direction.below_horizon = direction.zenith_rad > observer.view.horizon_rad;
     return direction;
 }
 

@@ -22,16 +22,13 @@ fn altitude_along(radius_m: f32, altitude_m: f32, mu: f32, distance_m: f32) -> f
     return altitude_m + growth / (sqrt(max(r * r + growth, 0.0)) + r);
 }
 
-// Distance to a shell that encloses the ray's start, m; zero when the start lies on or above it.
+// Distance to a shell that encloses the ray's start, m; a start above it counts as lying on it.
 fn distance_to_shell_from_below(radius_m: f32, altitude_m: f32, mu: f32, shell_m: f32) -> f32 {
-    let gap = (shell_m - altitude_m) * (2.0 * radius_m + shell_m + altitude_m);
-    if gap <= 0.0 {
-        return 0.0;
-    }
+    let gap = max((shell_m - altitude_m) * (2.0 * radius_m + shell_m + altitude_m), 0.0);
     let b = (radius_m + altitude_m) * mu;
     let root = sqrt(b * b + gap);
     // Of the two equal forms, the one without cancellation.
-    return select(root - b, gap / (root + b), b > 0.0);
+    return select(root - b, gap / max(root + b, 1e-20), b >= 0.0);
 }
 
 // Distance to the nearer intersection with a shell below the ray's start, m.

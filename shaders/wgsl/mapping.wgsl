@@ -60,11 +60,19 @@ fn multiple_scattering_to_unit(altitude_m: f32, mu_s: f32, top_m: f32) -> vec2<f
 // --- Sky view: the two halves of the view sphere, above and below the horizon, each a table of its own, so that no
 // filter reaches across the horizon. x = azimuth from the light / pi, y = sqrt(angle from the horizon / its range).
 
-// Zenith angles that bound the halves, rad.
 struct SkyViewRange {
+    // Zenith angle that parts the halves, rad.
     horizon_rad: f32,
-    // Where the sky half ends: the zenith, or the limb of the air seen from outside.
+    // Where the sky half ends: the zenith, or the limb of the air seen from outside, rad.
     sky_end_rad: f32,
+    // Where the horizontal lies in the sky half before and after y is stretched to put it on a row.
+    natural_y: f32,
+    snapped_y: f32,
+}
+
+// [0, 1] onto itself, linear on both sides of `start`, which goes to `end`.
+fn stretched(y: f32, start: f32, end: f32) -> f32 {
+    return select(1.0 - (1.0 - y) * (1.0 - end) / (1.0 - start), y * end / start, y < start);
 }
 
 struct ZenithAzimuth {
@@ -74,12 +82,14 @@ struct ZenithAzimuth {
 
 fn sky_view_from_unit(unit: vec2<f32>, below_horizon: bool, range: SkyViewRange) -> ZenithAzimuth {
     let end_rad = select(range.sky_end_rad, PI, below_horizon);
-    let zenith_rad = range.horizon_rad + (end_rad - range.horizon_rad) * unit.y * unit.y;
+    let y = select(stretched(unit.y, range.snapped_y, range.natural_y), unit.y, below_horizon);
+    let zenith_rad = range.horizon_rad + (end_rad - range.horizon_rad) * y * y;
     return ZenithAzimuth(zenith_rad, PI * unit.x);
 }
 
 fn sky_view_to_unit(zenith_rad: f32, azimuth_rad: f32, below_horizon: bool, range: SkyViewRange) -> vec2<f32> {
     let end_rad = select(range.sky_end_rad, PI, below_horizon);
-    let y2 = (zenith_rad - range.horizon_rad) / (end_rad - range.horizon_rad);
-    return vec2<f32>(clamp(azimuth_rad / PI, 0.0, 1.0), sqrt(clamp(y2, 0.0, 1.0)));
+    let y = sqrt(clamp((zenith_rad - range.horizon_rad) / (end_rad - range.horizon_rad), 0.0, 1.0));
+    let snapped_y = select(stretched(y, range.natural_y, range.snapped_y), y, below_horizon);
+    return vec2<f32>(clamp(azimuth_rad / PI, 0.0, 1.0), snapped_y);
 }

@@ -23,10 +23,10 @@ struct DirectionalLight {
 
 struct Observer {
     altitude_m: f32,
-    // Zenith angles of the horizon and of the sky's end, see mapping::SkyViewRange.
-    horizon_rad: f32,
-    sky_end_rad: f32,
-    padding: f32,
+    padding_a: f32,
+    padding_b: f32,
+    padding_c: f32,
+    view: SkyViewRange,
     lights: array<DirectionalLight, LIGHT_COUNT>,
 }
 
@@ -35,8 +35,4 @@ struct Observer {
 // Cosine of a light's zenith angle at the observer.
 fn light_mu_s(light: u32) -> f32 {
     return observer.lights[light].direction.z;
-}
-
-fn sky_view_range() -> SkyViewRange {
-    return SkyViewRange(observer.horizon_rad, observer.sky_end_rad);
 }

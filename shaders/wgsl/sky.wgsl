@@ -10,7 +10,7 @@
 #import welkin::atmosphere::{atmosphere, phase_per_sr, PI, SCATTERER_COUNT}
 #import welkin::mapping
 #import welkin::march::{ground_mu_s, view_ray}
-#import welkin::observer::{light_mu_s, observer, sky_view_range}
+#import welkin::observer::{light_mu_s, observer}
 #import welkin::tables::{diffuse_ground_irradiance, direct_ground_irradiance, table_sampler}
 
 @group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
@@ -46,7 +46,7 @@ fn sky_sample(light: u32, direction: SkyDirection) -> SkySample {
     var sample: SkySample;
 #ifdef AIR
     let unit = mapping::sky_view_to_unit(
-        direction.zenith_rad, direction.azimuth_rad, direction.below_horizon, sky_view_range()
+        direction.zenith_rad, direction.azimuth_rad, direction.below_horizon, observer.view
     );
     let uv = mapping::inset(unit, vec2<f32>(textureDimensions(sky_view_table)));
     let layer = layer_of(light, direction.below_horizon);

@@ -9,7 +9,7 @@
     cut_at_shadow, leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, view_ray, AirRay, LEG_COUNT,
     NODE_COUNT
 }
-#import welkin::observer::{light_mu_s, observer, sky_view_range}
+#import welkin::observer::{light_mu_s, observer}
 #import welkin::sky::{layer_of, multiple_scattering_table, MULTIPLE_LAYER, OPTICAL_DEPTH_LAYER, SINGLE_LAYER}
 #import welkin::tables::{multiply_scattered_source, optical_depth_to_top}
 
@@ -66,7 +66,7 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     let light = texel.z / 2u;
     let below_horizon = texel.z % 2u == 1u;
     let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(size));
-    let view = mapping::sky_view_from_unit(unit, below_horizon, sky_view_range());
+    let view = mapping::sky_view_from_unit(unit, below_horizon, observer.view);
     let mu = cos(view.zenith_rad);
     let mu_s = light_mu_s(light);
     let sines = sin(view.zenith_rad) * sqrt(max(1.0 - mu_s * mu_s, 0.0));

@@ -120,7 +120,7 @@ impl<'a> Facts<'a> {
 
     /// How the sky-view table sees the sphere of directions.
     pub fn sky_view_mapping(&self) -> SkyViewMapping {
-        SkyViewMapping::new(&self.scene.planet, self.scene.camera.altitude_m.max(0.0))
+        SkyViewMapping::new(&self.scene.planet, self.scene.camera.altitude_m.max(0.0), self.settings.sky_view_size[1])
     }
 }
 

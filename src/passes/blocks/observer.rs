@@ -20,14 +20,23 @@ struct DirectionalLightBlock {
     padding: f32,
 }
 
+/// WGSL `SkyViewRange`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+struct SkyViewRangeBlock {
+    horizon_rad: f32,
+    sky_end_rad: f32,
+    natural_y: f32,
+    snapped_y: f32,
+}
+
 /// WGSL `Observer` up to its array of lights.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 struct ObserverHeader {
     altitude_m: f32,
-    horizon_rad: f32,
-    sky_end_rad: f32,
-    padding: f32,
+    padding: [f32; 3],
+    view: SkyViewRangeBlock,
 }
 
 /// Solar limb darkening I(μ) = μ^k, k = -0.023 + 0.292 µm / λ: Hestroffer & Magnan 1998, A&A 333, 338, eq. 5.
@@ -58,9 +67,13 @@ pub fn observer_block(facts: &Facts) -> Vec<u8> {
     let mapping = facts.sky_view_mapping();
     let header = ObserverHeader {
         altitude_m: facts.scene.camera.altitude_m.max(0.0) as f32,
-        padding: 0.0,
-        horizon_rad: mapping.horizon_rad as f32,
-        sky_end_rad: mapping.sky_end_rad as f32,
+        padding: [0.0; 3],
+        view: SkyViewRangeBlock {
+            horizon_rad: mapping.horizon_rad as f32,
+            sky_end_rad: mapping.sky_end_rad as f32,
+            natural_y: mapping.horizontal_y[0] as f32,
+            snapped_y: mapping.horizontal_y[1] as f32,
+        },
     };
     let mut lights: Vec<_> = facts.lights.iter().map(|light| DirectionalLightBlock::new(light)).collect();
     lights.resize(
