@@ -1,0 +1,21 @@
+//! A device for tests, under validation.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use welkin::gpu::{DeviceRequest, Gpu, Validation, ValidationLog};
+
+/// One device at a time: the validation layer's state and the processor's threads are shared by all of them.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+/// Runs a test on a device with validation on. A machine without a device fails the test, and so does a single message
+/// of the validation layer, also one that comes when the device is closed.
+pub fn with_gpu(test: impl FnOnce(&Gpu)) {
+    let _alone: MutexGuard<()> = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
+    let gpu = Gpu::new(&request).unwrap_or_else(|error| panic!("{error}"));
+    let log: ValidationLog = gpu.validation_log();
+    test(&gpu);
+    drop(gpu);
+    let messages: Vec<String> = log.messages().iter().map(ToString::to_string).collect();
+    assert!(messages.is_empty(), "the validation layer complains:\n{}", messages.join("\n"));
+}
