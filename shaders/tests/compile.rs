@@ -1,5 +1,7 @@
 //! Passes compile to SPIR-V that says what it needs, and faults are reported where they are.
 
+use std::collections::BTreeSet;
+
 use welkin_shaders::{
     Access, Binding, BindingKind, Definition, Definitions, Dimension, Field, Shader, ShaderError, Sources,
     StorageFormat,
@@ -66,11 +68,28 @@ fn located(error: ShaderError) -> (String, usize, usize, String, String) {
     }
 }
 
+/// The names between `before` and the end of a word, in all shipped WGSL.
+fn names_after(before: &str) -> BTreeSet<String> {
+    let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl");
+    let files = std::fs::read_dir(directory).unwrap().map(|entry| std::fs::read_to_string(entry.unwrap().path()));
+    let text: String = files.map(Result::unwrap).collect();
+    let word = |rest: &str| rest.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect();
+    text.split(before).skip(1).map(word).filter(|name: &String| name != "NAME").collect()
+}
+
 #[test]
-fn every_shipped_pass_compiles() {
-    for pass in Sources::embedded().passes() {
-        let shader = welkin_shaders::compile(pass, &Definitions::new()).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(shader.name, pass);
+fn every_shipped_pass_compiles_with_no_switch_with_each_and_with_all() {
+    let numbers: Definitions = names_after("#{").into_iter().map(|name| (name, Definition::U32(16))).collect();
+    let switches: Vec<String> = names_after("#ifdef ").into_iter().collect();
+    let passes: Vec<String> = Sources::embedded().passes().map(str::to_owned).collect();
+    assert!(!passes.is_empty() && !switches.is_empty(), "nothing would be tested");
+    for pass in &passes {
+        for chosen in [&[], &switches[..]].into_iter().chain(switches.chunks(1)) {
+            let mut definitions = numbers.clone();
+            definitions.extend(chosen.iter().map(|name| (name.clone(), Definition::Bool(true))));
+            let shader = welkin_shaders::compile(pass, &definitions);
+            shader.unwrap_or_else(|error| panic!("{pass} with {definitions:?}: {error}"));
+        }
     }
 }
 
