@@ -5,7 +5,7 @@ mod common;
 use common::with_gpu;
 use welkin::gpu::{
     AddressMode, BufferKind, Clock, DeviceRequest, Filter, Filtering, Gpu, GpuError, GpuImage, ImageFormat, ImageShape,
-    Pipeline, Resource, Work,
+    Pipeline, Resource, Validation, Work,
 };
 use welkin_shaders::{Definitions, Shader, Sources};
 
@@ -279,27 +279,78 @@ fn a_fourth_uniform_buffer_is_refused_because_mesa_22_would_write_out_of_bounds(
 }
 
 #[test]
-fn time_is_attributed_to_the_dispatch_that_took_it_in_either_order() {
+fn time_is_attributed_to_the_dispatch_that_took_it() {
     with_gpu(|gpu| {
         let pass = pipeline(gpu, "spin", SPIN);
         let values = gpu.storage_buffer("values", 64 * 64 * 4).unwrap();
-        let (heavy, light) = (("heavy", 4000_u32), ("light", 4_u32));
-        for order in [[heavy, light], [light, heavy]] {
-            let mut commands = gpu.record_timed("timed").unwrap();
-            for (label, steps) in order {
-                let resources = [("values", Resource::Buffer(&values)), ("parameters", Resource::data(&steps))];
-                commands.dispatch_as(label, &pass, &resources, Work::Workgroups([64, 1, 1])).unwrap();
+        let steps = [4_u32, 4000, 4, 4, 4000];
+        let times = |clock: Clock| {
+            let mut commands = gpu.record_timed_by("timed", clock).unwrap();
+            for (index, steps) in steps.iter().enumerate() {
+                let resources = [("values", Resource::Buffer(&values)), ("parameters", Resource::data(steps))];
+                commands.dispatch_as(&format!("{index}"), &pass, &resources, Work::Workgroups([64, 1, 1])).unwrap();
             }
             let completed = commands.submit_and_wait().unwrap();
-            assert_eq!(completed.clock, Some(Clock::of(gpu.info())));
-            let labels: Vec<_> = completed.times.iter().map(|time| time.label.as_str()).collect();
-            assert_eq!(labels, order.map(|(label, _)| label));
-            let time = |label| completed.times.iter().find(|time| time.label == label).unwrap().milliseconds;
-            // The work differs a thousandfold; what a submission costs by itself is the rest.
-            assert!(time("heavy") > 3.0 * time("light"), "{completed:?}");
-            println!("{completed:?}");
+            assert_eq!(completed.clock, Some(clock));
+            assert!(completed.times.iter().enumerate().all(|(index, time)| time.label == index.to_string()));
+            completed.times.iter().map(|time| time.milliseconds).collect::<Vec<_>>()
+        };
+        for clock in [Clock::Host, Clock::of(gpu.info())] {
+            // The least of some tries leaves out what other processes cost.
+            let tries: Vec<_> = (0..4).map(|_| times(clock)).collect();
+            let least = |index: usize| tries.iter().map(|times| times[index]).fold(f64::INFINITY, f64::min);
+            let (light, heavy) = (least(0).max(least(2)).max(least(3)), least(1).min(least(4)));
+            // The work differs a thousandfold; what a dispatch costs by itself is the rest.
+            assert!(heavy > 3.0 * light && heavy > 0.0, "{clock:?}: light {light} ms, heavy {heavy} ms");
         }
     });
+}
+
+#[test]
+fn more_dispatches_than_one_query_pool_holds_are_all_timed() {
+    with_gpu(|gpu| {
+        let pass = pipeline(gpu, "spin", SPIN);
+        let values = gpu.storage_buffer("values", 64 * 4).unwrap();
+        let mut commands = gpu.record_timed("many").unwrap();
+        let resources = [("values", Resource::Buffer(&values)), ("parameters", Resource::data(&1_u32))];
+        for _ in 0..150 {
+            commands.dispatch(&pass, &resources, Work::Workgroups([1, 1, 1])).unwrap();
+        }
+        let times = commands.submit_and_wait().unwrap().times;
+        assert_eq!(times.len(), 150);
+        assert!(times.iter().all(|time| time.label == "spin" && time.milliseconds < 1e3), "{times:?}");
+    });
+}
+
+/// Runs this test again in a process of its own with one more environment variable, and returns what it prints.
+fn again_with(test: &str, variable: &str, value: &str) -> String {
+    let program = std::env::current_exe().unwrap();
+    let mut child = std::process::Command::new(program);
+    child.args(["--exact", test, "--nocapture"]).env("WELKIN_TEST_CHILD", "1").env(variable, value);
+    String::from_utf8(child.output().unwrap().stdout).unwrap()
+}
+
+#[test]
+fn without_a_driver_the_error_names_the_packages_to_install() {
+    if std::env::var_os("WELKIN_TEST_CHILD").is_some() {
+        let error = Gpu::new(&DeviceRequest::default()).map(drop).unwrap_err();
+        return println!("usable: {}; {error}", !error.is_no_usable_device());
+    }
+    let test = "without_a_driver_the_error_names_the_packages_to_install";
+    let text = again_with(test, "VK_DRIVER_FILES", "/no/such/driver.json");
+    assert!(text.contains("usable: false; no Vulkan device"), "{text}");
+    assert!(text.contains("libvulkan1 mesa-vulkan-drivers"), "{text}");
+}
+
+#[test]
+fn without_the_validation_layer_asking_for_it_names_the_package_to_install() {
+    if std::env::var_os("WELKIN_TEST_CHILD").is_some() {
+        let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
+        return println!("{}", Gpu::new(&request).map(drop).unwrap_err());
+    }
+    let test = "without_the_validation_layer_asking_for_it_names_the_package_to_install";
+    let text = again_with(test, "VK_LAYER_PATH", "/no/such/directory");
+    assert!(text.contains("apt-get install vulkan-validationlayers"), "{text}");
 }
 
 #[test]

@@ -154,6 +154,12 @@ pub enum GpuError {
         /// The label of the open recording.
         open: String,
     },
+    /// The device's queue has no timestamps.
+    #[error("{device} has no timestamps; use the host's clock")]
+    NoTimestamps {
+        /// The device's name.
+        device: String,
+    },
     /// The host's elements do not fit a resource.
     #[error("`{name}` has {expected} bytes, but {found} bytes were given or asked for")]
     Size {

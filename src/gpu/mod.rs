@@ -149,8 +149,7 @@ impl Gpu {
         Commands::new(&self.0, label, None)
     }
 
-    /// As [`Gpu::record`], and each dispatch's time is taken. On a device without timestamps that can be trusted
-    /// ([`Clock::of`]) each dispatch is run by itself, at once.
+    /// As [`Gpu::record`], and each dispatch's time is taken with the best clock ([`Clock::of`]).
     ///
     /// # Errors
     /// As [`Gpu::record`].
@@ -158,7 +157,15 @@ impl Gpu {
         self.record_timed_by(label, Clock::of(self.info()))
     }
 
-    fn record_timed_by(&self, label: &str, clock: Clock) -> Result<Commands, GpuError> {
+    /// As [`Gpu::record_timed`], with a certain clock. With the host's, each dispatch is run by itself, at once, and
+    /// its time includes the submission.
+    ///
+    /// # Errors
+    /// As [`Gpu::record`]; [`GpuError::NoTimestamps`].
+    pub fn record_timed_by(&self, label: &str, clock: Clock) -> Result<Commands, GpuError> {
+        if clock == Clock::Timestamps && Clock::of(self.info()) != clock {
+            return Err(GpuError::NoTimestamps { device: self.info().name.clone() });
+        }
         Commands::new(&self.0, label, Some(clock))
     }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use ash::vk;
 
 use super::context::Context;
-use super::device::{DeviceInfo, DeviceKind};
+use super::device::DeviceInfo;
 use super::error::{During, GpuError};
 
 /// Dispatches that one query pool serves.
@@ -22,11 +22,10 @@ pub enum Clock {
 }
 
 impl Clock {
-    /// The clock that can be trusted on a device. Drivers that compute on the CPU run dispatches and timestamps in
-    /// different threads: Mesa's lavapipe attributes times to the wrong pass (`tests/gpu_engine.rs` shows which).
+    /// Timestamps where the device's queue has them, else the host's clock.
     pub fn of(device: &DeviceInfo) -> Self {
         let has_timestamps = device.limits.timestamp_bits > 0 && device.limits.timestamp_period_ns > 0.0;
-        if has_timestamps && device.kind != DeviceKind::Cpu { Self::Timestamps } else { Self::Host }
+        if has_timestamps { Self::Timestamps } else { Self::Host }
     }
 }
 
