@@ -53,11 +53,11 @@ fn sky_sample(light: u32, direction: SkyDirection) -> SkySample {
     let optical_depth = textureSampleLevel(sky_view_table, table_sampler, uv, layer + OPTICAL_DEPTH_LAYER, 0.0).rgb;
     sample.transmittance = exp(-optical_depth);
 #ifdef MULTIPLE_SCATTERING
-    sample.radiance = textureSampleLevel(sky_view_table, table_sampler, uv, layer + MULTIPLE_LAYER, 0.0).rgb;
+    sample.radiance = exp(textureSampleLevel(sky_view_table, table_sampler, uv, layer + MULTIPLE_LAYER, 0.0).rgb);
 #endif
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
         let single = textureSampleLevel(sky_view_table, table_sampler, uv, layer + SINGLE_LAYER + c, 0.0).rgb;
-        sample.radiance += phase_per_sr(c, direction.nu) * single;
+        sample.radiance += phase_per_sr(c, direction.nu) * exp(single);
     }
 #else
     sample.transmittance = vec3<f32>(1.0);

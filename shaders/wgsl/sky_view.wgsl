@@ -15,6 +15,9 @@
 
 @group(0) @binding(8) var sky_view_image: texture_storage_2d_array<rgba32float, write>;
 
+// Below this, light is dark; it keeps logarithms finite.
+const DARK: f32 = 1e-30;
+
 struct Integrals {
     optical_depth: vec3<f32>,
     // int b T T_light dt of each scatterer, sr less than radiance: its phase function is missing.
@@ -56,6 +59,11 @@ fn integrate(ray: AirRay) -> Integrals {
     return sum;
 }
 
+// Light falls exponentially into the planet's shadow and towards space; its logarithm is what interpolates well.
+fn logarithm(light: vec3<f32>) -> vec3<f32> {
+    return log(max(light, vec3<f32>(DARK)));
+}
+
 // x, y: direction; z: which half of the view sphere, of which light.
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
@@ -74,8 +82,8 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     var sum = integrate(cut_at_shadow(view_ray(observer.altitude_m, mu, mu_s, nu, below_horizon)));
     let first = layer_of(light, below_horizon);
     textureStore(sky_view_image, texel.xy, first + OPTICAL_DEPTH_LAYER, vec4<f32>(sum.optical_depth, 0.0));
-    textureStore(sky_view_image, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(sum.multiple, 0.0));
+    textureStore(sky_view_image, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(logarithm(sum.multiple), 0.0));
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
-        textureStore(sky_view_image, texel.xy, first + SINGLE_LAYER + c, vec4<f32>(sum.single[c], 0.0));
+        textureStore(sky_view_image, texel.xy, first + SINGLE_LAYER + c, vec4<f32>(logarithm(sum.single[c]), 0.0));
     }
 }
