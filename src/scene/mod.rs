@@ -1,12 +1,25 @@
 //! What the user asks for: a validated [`Scene`] in SI units and `f64`.
 
+mod assemble;
 mod camera;
 mod direction;
+mod error;
+mod file;
 mod light;
+mod locate;
+mod medium;
+mod preset;
+mod read;
+mod sun_position;
 
 pub use camera::{Camera, Display, ToneMap};
 pub use direction::Direction;
+pub use error::{InvalidField, SceneError};
+pub use file::schema;
 pub use light::{DirectionalLight, EnvironmentLight, Light, PointLight};
+pub use locate::Place;
+pub use preset::{Preset, PresetSun};
+pub use sun_position::{SunPositionError, sun_direction};
 
 use welkin_lut::{Medium, Planet};
 
@@ -25,4 +38,18 @@ pub struct Scene {
     pub camera: Camera,
     /// How radiance becomes a PNG; does not touch the EXR.
     pub display: Display,
+}
+
+/// What is wrong with a field, before anyone has looked up where it stands.
+struct Problem {
+    /// The field's path, as in `medium[0].profile.layer.top_m`.
+    field: String,
+    /// What is wrong, with the value and what is allowed.
+    message: String,
+}
+
+impl Problem {
+    fn new(field: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { field: field.into(), message: message.into() }
+    }
 }

@@ -1,0 +1,134 @@
+//! From what a file says and what its preset says to a [`Scene`].
+
+use glam::DVec3;
+use welkin_lut::Planet;
+
+use super::file::{CameraFile, DisplayFile, LightsFile, PlanetFile, SceneFile, SunFile, ToneMapFile, WhenFile};
+use super::medium::assemble_medium;
+use super::sun_position::sun_direction;
+use super::{
+    Camera, Direction, DirectionalLight, Display, EnvironmentLight, Light, PointLight, Preset, Problem, Scene, ToneMap,
+};
+
+const DEFAULT_FIELD_OF_VIEW_DEG: f64 = 60.0;
+const DEFAULT_WIDTH: u32 = 1280;
+const DEFAULT_HEIGHT: u32 = 720;
+
+/// Joins file and preset; every range is already checked by the file's types, so only what fields say together is left.
+pub fn assemble(file: &SceneFile, default_name: &str) -> Result<Scene, Problem> {
+    let planet = assemble_planet(&file.planet, file.preset);
+    planet.validate().map_err(|error| Problem::new("planet", error.to_string()))?;
+    let medium = assemble_medium(file.medium.as_ref(), file.preset)?;
+    let mut lights = vec![Light::Directional(assemble_sun(&file.sun, file.preset)?)];
+    add_lights(&file.light, &mut lights)?;
+    let camera = assemble_camera(&file.camera);
+    if camera.altitude_m <= -planet.radius_m {
+        let (altitude, radius) = (camera.altitude_m, planet.radius_m);
+        let message = format!("invalid value: `{altitude}`, expected a number above {}, the planet's centre", -radius);
+        return Err(Problem::new("camera.altitude_m", message));
+    }
+    let name = file.name.clone().unwrap_or_else(|| default_name.to_owned());
+    Ok(Scene { name, planet, medium, lights, camera, display: assemble_display(&file.display) })
+}
+
+fn assemble_planet(file: &PlanetFile, preset: Preset) -> Planet {
+    let planet = preset.planet();
+    Planet {
+        radius_m: file.radius_m.map_or(planet.radius_m, |radius| radius.get()),
+        atmosphere_height_m: file.atmosphere_height_m.map_or(planet.atmosphere_height_m, |height| height.get()),
+        ground_albedo: file.ground_albedo.as_ref().map_or(planet.ground_albedo, |albedo| albedo.get()),
+    }
+}
+
+fn assemble_sun(file: &SunFile, preset: Preset) -> Result<DirectionalLight, Problem> {
+    let default = preset.sun();
+    let direction = match (&file.when, file.elevation_deg, file.azimuth_deg) {
+        (None, Some(elevation), Some(azimuth)) => direction(elevation.get(), azimuth.get()),
+        (Some(when), None, None) => direction_when(when, preset)?,
+        (None, _, _) => {
+            let message = "missing fields, expected both elevation_deg and azimuth_deg, or [sun.when]";
+            return Err(Problem::new("sun", message));
+        }
+        (Some(_), _, _) => {
+            let message = "the sun's position is said twice, expected either elevation_deg and azimuth_deg or [sun.when]";
+            return Err(Problem::new("sun.when", message));
+        }
+    };
+    let angular_radius_rad = file.angular_radius_deg.map(|radius| radius.get().to_radians());
+    Ok(DirectionalLight {
+        name: "sun".to_owned(),
+        direction,
+        irradiance: file.irradiance.as_ref().map_or(default.irradiance, |irradiance| irradiance.get()),
+        angular_radius_rad: angular_radius_rad.unwrap_or(default.angular_radius_rad),
+        limb_darkening: file.limb_darkening.unwrap_or(default.limb_darkening),
+    })
+}
+
+fn direction_when(when: &WhenFile, preset: Preset) -> Result<Direction, Problem> {
+    if !preset.is_earth() {
+        let message = format!(
+            "a date says nothing of the sun over preset `{}`, expected elevation_deg and azimuth_deg in [sun]",
+            preset.name()
+        );
+        return Err(Problem::new("sun.when", message));
+    }
+    sun_direction(when.date_time, when.latitude_deg.get(), when.longitude_deg.get())
+        .map_err(|error| Problem::new("sun.when.date_time", error.to_string()))
+}
+
+fn direction(elevation_deg: f64, azimuth_deg: f64) -> Direction {
+    Direction { elevation_rad: elevation_deg.to_radians(), azimuth_rad: azimuth_deg.to_radians() }
+}
+
+fn add_lights(file: &LightsFile, lights: &mut Vec<Light>) -> Result<(), Problem> {
+    let mut names = vec!["sun".to_owned()];
+    let mut claim = |field: String, name: &String| {
+        if names.contains(name) {
+            let message = format!("invalid value: `{name}`, expected a name that no other light has");
+            return Err(Problem::new(field, message));
+        }
+        names.push(name.clone());
+        Ok(())
+    };
+    for (index, light) in file.directional.iter().enumerate() {
+        claim(format!("light.directional[{index}].name"), &light.name)?;
+        lights.push(Light::Directional(DirectionalLight {
+            name: light.name.clone(),
+            direction: direction(light.elevation_deg.get(), light.azimuth_deg.get()),
+            irradiance: light.irradiance.get(),
+            angular_radius_rad: light.angular_radius_deg.map_or(0.0, |radius| radius.get().to_radians()),
+            limb_darkening: light.limb_darkening,
+        }));
+    }
+    for (index, light) in file.point.iter().enumerate() {
+        claim(format!("light.point[{index}].name"), &light.name)?;
+        let position_m = DVec3::from_array(light.position_m.map(|coordinate| coordinate.get()));
+        lights.push(Light::Point(PointLight {
+            name: light.name.clone(),
+            position_m,
+            intensity: light.intensity.get(),
+        }));
+    }
+    let environment = file.environment.as_ref().map(|light| EnvironmentLight { radiance: light.radiance.get() });
+    lights.extend(environment.map(Light::Environment));
+    Ok(())
+}
+
+fn assemble_camera(file: &CameraFile) -> Camera {
+    let field_of_view_deg = file.vertical_field_of_view_deg.map_or(DEFAULT_FIELD_OF_VIEW_DEG, |angle| angle.get());
+    Camera {
+        altitude_m: file.altitude_m.get(),
+        direction: direction(file.elevation_deg.get(), file.azimuth_deg.get()),
+        vertical_field_of_view_rad: field_of_view_deg.to_radians(),
+        width: file.width.map_or(DEFAULT_WIDTH, |width| width.get()),
+        height: file.height.map_or(DEFAULT_HEIGHT, |height| height.get()),
+    }
+}
+
+fn assemble_display(file: &DisplayFile) -> Display {
+    let tone_map = match file.tone_map {
+        None | Some(ToneMapFile::Filmic) => ToneMap::Filmic,
+        Some(ToneMapFile::None) => ToneMap::None,
+    };
+    Display { exposure_ev: file.exposure_ev.map_or(0.0, |exposure| exposure.get()), tone_map }
+}
