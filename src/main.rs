@@ -1,1 +1,5 @@
-fn main() {}
+//! The `welkin` program; everything it does lies in the library.
+
+fn main() -> std::process::ExitCode {
+    welkin::cli::run()
+}

@@ -1,5 +1,7 @@
 //! From what a file says and what its preset says to a [`Scene`].
 
+use std::path::Path;
+
 use glam::DVec3;
 use welkin_lut::Planet;
 
@@ -15,10 +17,10 @@ const DEFAULT_WIDTH: u32 = 1280;
 const DEFAULT_HEIGHT: u32 = 720;
 
 /// Joins file and preset; every range is already checked by the file's types, so only what fields say together is left.
-pub fn assemble(file: &SceneFile, default_name: &str) -> Result<Scene, Problem> {
+pub fn assemble(file: &SceneFile, path: &Path) -> Result<Scene, Problem> {
     let planet = assemble_planet(&file.planet, file.preset);
     planet.validate().map_err(|error| Problem::new("planet", error.to_string()))?;
-    let medium = assemble_medium(file.medium.as_ref(), file.preset)?;
+    let medium = assemble_medium(file.medium.as_ref(), file.preset, path.parent().unwrap_or(Path::new("")))?;
     let mut lights = vec![Light::Directional(assemble_sun(&file.sun, file.preset)?)];
     add_lights(&file.light, &mut lights)?;
     let camera = assemble_camera(&file.camera);
@@ -27,7 +29,8 @@ pub fn assemble(file: &SceneFile, default_name: &str) -> Result<Scene, Problem> 
         let message = format!("invalid value: `{altitude}`, expected a number above {}, the planet's centre", -radius);
         return Err(Problem::new("camera.altitude_m", message));
     }
-    let name = file.name.clone().unwrap_or_else(|| default_name.to_owned());
+    let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = file.name.clone().unwrap_or_else(stem);
     Ok(Scene { name, planet, medium, lights, camera, display: assemble_display(&file.display) })
 }
 
@@ -50,7 +53,8 @@ fn assemble_sun(file: &SunFile, preset: Preset) -> Result<DirectionalLight, Prob
             return Err(Problem::new("sun", message));
         }
         (Some(_), _, _) => {
-            let message = "the sun's position is said twice, expected either elevation_deg and azimuth_deg or [sun.when]";
+            let message =
+                "the sun's position is said twice, expected either elevation_deg and azimuth_deg or [sun.when]";
             return Err(Problem::new("sun.when", message));
         }
     };

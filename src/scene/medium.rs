@@ -1,24 +1,27 @@
 //! From what a file says of the air and what its preset says to a [`Medium`].
 
 use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
 
+use welkin_lut::phase::TabulatedPhase;
 use welkin_lut::{BAND_COUNT, Constituent, DensityProfile, Medium, PhaseFunction};
 
 use super::file::{ConstituentChange, ConstituentFile, MediumFile, PhaseFile, ProfileFile};
 use super::{Preset, Problem};
 
-/// Joins file and preset.
-pub fn assemble_medium(file: Option<&MediumFile>, preset: Preset) -> Result<Medium, Problem> {
+/// Joins file and preset; `directory` is where tables are looked for.
+pub fn assemble_medium(file: Option<&MediumFile>, preset: Preset, directory: &Path) -> Result<Medium, Problem> {
     let medium = match file {
         None => preset.medium(),
-        Some(MediumFile::Complete(list)) => complete(list)?,
-        Some(MediumFile::Changes(changes)) => change(preset, changes)?,
+        Some(MediumFile::Complete(list)) => complete(list, directory)?,
+        Some(MediumFile::Changes(changes)) => change(preset, changes, directory)?,
     };
     medium.validate().map_err(|error| Problem::new("medium", error.to_string()))?;
     Ok(medium)
 }
 
-fn complete(list: &[ConstituentFile]) -> Result<Medium, Problem> {
+fn complete(list: &[ConstituentFile], directory: &Path) -> Result<Medium, Problem> {
     let mut constituents: Vec<Constituent> = Vec::new();
     for (index, file) in list.iter().enumerate() {
         let path = format!("medium[{index}]");
@@ -32,22 +35,24 @@ fn complete(list: &[ConstituentFile]) -> Result<Medium, Problem> {
             absorption_per_m: file.absorption_per_m.clone(),
             emission_per_m: file.emission_per_m.clone(),
             profile: Some(file.profile),
-            phase: file.phase,
+            phase: file.phase.clone(),
         };
-        constituents.push(new_constituent(&path, &file.name, &change, "")?);
+        let change = Change { path: &path, file: &change, directory };
+        constituents.push(change.make(&file.name, "")?);
     }
     Ok(Medium { constituents })
 }
 
-fn change(preset: Preset, changes: &BTreeMap<String, ConstituentChange>) -> Result<Medium, Problem> {
+fn change(preset: Preset, changes: &BTreeMap<String, ConstituentChange>, directory: &Path) -> Result<Medium, Problem> {
     let mut medium = preset.medium();
     let names = medium.constituents.iter().map(|constituent| format!("`{}`", constituent.name)).collect::<Vec<_>>();
     let note = format!(" for a constituent that preset `{}` lacks; it has {}", preset.name(), names.join(", "));
-    for (name, change) in changes {
+    for (name, file) in changes {
         let path = format!("medium.{name}");
+        let change = Change { path: &path, file, directory };
         match medium.constituents.iter_mut().find(|constituent| constituent.name == *name) {
-            Some(constituent) => apply(&path, change, constituent)?,
-            None => medium.constituents.push(new_constituent(&path, name, change, &note)?),
+            Some(constituent) => change.apply(constituent)?,
+            None => medium.constituents.push(change.make(name, &note)?),
         }
     }
     // A constituent that neither takes nor gives light would only cost time.
@@ -57,72 +62,96 @@ fn change(preset: Preset, changes: &BTreeMap<String, ConstituentChange>) -> Resu
     Ok(medium)
 }
 
-/// `note` says, where a field is missing, why the preset does not fill it in.
-fn new_constituent(path: &str, name: &str, file: &ConstituentChange, note: &str) -> Result<Constituent, Problem> {
-    let missing = |field: &str| Problem::new(path, format!("missing field `{field}`, required{note}"));
-    let profile = file.profile.ok_or_else(|| missing("profile"))?;
-    let mut constituent = Constituent {
-        name: name.to_owned(),
-        scattering_per_m: [0.0; BAND_COUNT],
-        absorption_per_m: [0.0; BAND_COUNT],
-        emission_per_m: [0.0; BAND_COUNT],
-        profile: density_profile(path, profile)?,
-        phase: PhaseFunction::Isotropic,
-    };
-    apply(path, file, &mut constituent)?;
-    if constituent.scatters() && file.phase.is_none() {
-        return Err(missing("phase"));
-    }
-    Ok(constituent)
+/// What a file says of one constituent, and where.
+struct Change<'a> {
+    path: &'a str,
+    file: &'a ConstituentChange,
+    directory: &'a Path,
 }
 
-fn apply(path: &str, change: &ConstituentChange, constituent: &mut Constituent) -> Result<(), Problem> {
-    let Constituent { scattering_per_m, absorption_per_m, emission_per_m, .. } = constituent;
-    let factor = change.density_factor.map_or(1.0, |factor| factor.get());
-    let coefficients = [
-        (scattering_per_m, &change.scattering_per_m),
-        (absorption_per_m, &change.absorption_per_m),
-        (emission_per_m, &change.emission_per_m),
-    ];
-    for (bands, file) in coefficients {
-        if let Some(file) = file {
-            *bands = file.get();
+impl Change<'_> {
+    /// A constituent from the change alone; `note` says, where a field is missing, why no preset fills it in.
+    fn make(&self, name: &str, note: &str) -> Result<Constituent, Problem> {
+        let missing = |field: &str| Problem::new(self.path, format!("missing field `{field}`, required{note}"));
+        let mut constituent = Constituent {
+            name: name.to_owned(),
+            scattering_per_m: [0.0; BAND_COUNT],
+            absorption_per_m: [0.0; BAND_COUNT],
+            emission_per_m: [0.0; BAND_COUNT],
+            profile: self.profile(self.file.profile.ok_or_else(|| missing("profile"))?)?,
+            phase: PhaseFunction::Isotropic,
+        };
+        self.apply(&mut constituent)?;
+        if constituent.scatters() && self.file.phase.is_none() {
+            return Err(missing("phase"));
         }
-        *bands = bands.map(|value| value * factor);
+        Ok(constituent)
     }
-    if let Some(profile) = change.profile {
-        constituent.profile = density_profile(path, profile)?;
-    }
-    if let Some(phase) = change.phase {
-        constituent.phase = phase_function(phase);
-    }
-    Ok(())
-}
 
-fn density_profile(path: &str, file: ProfileFile) -> Result<DensityProfile, Problem> {
-    Ok(match file {
-        ProfileFile::Exponential { scale_height_m } => {
-            DensityProfile::Exponential { scale_height_m: scale_height_m.get() }
+    fn apply(&self, constituent: &mut Constituent) -> Result<(), Problem> {
+        let Constituent { scattering_per_m, absorption_per_m, emission_per_m, .. } = constituent;
+        let factor = self.file.density_factor.map_or(1.0, |factor| factor.get());
+        let coefficients = [
+            (scattering_per_m, &self.file.scattering_per_m),
+            (absorption_per_m, &self.file.absorption_per_m),
+            (emission_per_m, &self.file.emission_per_m),
+        ];
+        for (bands, file) in coefficients {
+            let values = file.as_ref().map_or(*bands, |file| file.get());
+            *bands = values.map(|value| value * factor);
         }
-        ProfileFile::Tent { centre_m, half_width_m } => {
-            DensityProfile::Tent { centre_m: centre_m.get(), half_width_m: half_width_m.get() }
+        if let Some(profile) = self.file.profile {
+            constituent.profile = self.profile(profile)?;
         }
-        ProfileFile::Layer { bottom_m, top_m } => {
-            let (bottom_m, top_m) = (bottom_m.get(), top_m.get());
-            if top_m <= bottom_m {
-                let message = format!("invalid value: `{top_m}`, expected a number above bottom_m, {bottom_m}");
-                return Err(Problem::new(format!("{path}.profile.layer.top_m"), message));
+        if let Some(phase) = &self.file.phase {
+            constituent.phase = self.phase(phase)?;
+        }
+        Ok(())
+    }
+
+    fn profile(&self, file: ProfileFile) -> Result<DensityProfile, Problem> {
+        Ok(match file {
+            ProfileFile::Exponential { scale_height_m } => {
+                DensityProfile::Exponential { scale_height_m: scale_height_m.get() }
             }
-            DensityProfile::Layer { bottom_m, top_m }
-        }
-    })
-}
+            ProfileFile::Tent { centre_m, half_width_m } => {
+                DensityProfile::Tent { centre_m: centre_m.get(), half_width_m: half_width_m.get() }
+            }
+            ProfileFile::Layer { bottom_m, top_m } => {
+                let (bottom_m, top_m) = (bottom_m.get(), top_m.get());
+                if top_m <= bottom_m {
+                    let message = format!("invalid value: `{top_m}`, expected a number above bottom_m, {bottom_m}");
+                    return Err(Problem::new(format!("{}.profile.layer.top_m", self.path), message));
+                }
+                DensityProfile::Layer { bottom_m, top_m }
+            }
+        })
+    }
 
-fn phase_function(file: PhaseFile) -> PhaseFunction {
-    match file {
-        PhaseFile::Isotropic => PhaseFunction::Isotropic,
-        PhaseFile::Rayleigh => PhaseFunction::Rayleigh,
-        PhaseFile::HenyeyGreenstein { g } => PhaseFunction::HenyeyGreenstein { g: g.get() },
-        PhaseFile::CornetteShanks { g } => PhaseFunction::CornetteShanks { g: g.get() },
+    fn phase(&self, file: &PhaseFile) -> Result<PhaseFunction, Problem> {
+        Ok(match file {
+            PhaseFile::Isotropic => PhaseFunction::Isotropic,
+            PhaseFile::Rayleigh => PhaseFunction::Rayleigh,
+            PhaseFile::HenyeyGreenstein { g } => PhaseFunction::HenyeyGreenstein { g: g.get() },
+            PhaseFile::DoubleHenyeyGreenstein { weight, g1, g2 } => {
+                PhaseFunction::DoubleHenyeyGreenstein { weight: weight.get(), g1: g1.get(), g2: g2.get() }
+            }
+            PhaseFile::Schlick { k } => PhaseFunction::Schlick { k: k.get() },
+            PhaseFile::CornetteShanks { g } => PhaseFunction::CornetteShanks { g: g.get() },
+            PhaseFile::Draine { g, alpha } => PhaseFunction::Draine { g: g.get(), alpha: alpha.get() },
+            PhaseFile::HenyeyGreensteinDraine { droplet_diameter_um } => {
+                PhaseFunction::HenyeyGreensteinDraine { droplet_diameter_um: droplet_diameter_um.get() }
+            }
+            PhaseFile::Table { file } => PhaseFunction::Tabulated(Arc::new(self.table(file)?)),
+        })
+    }
+
+    fn table(&self, file: &Path) -> Result<TabulatedPhase, Problem> {
+        let path = self.directory.join(file);
+        let problem = |reason: String| {
+            Problem::new(format!("{}.phase.table.file", self.path), format!("table '{}': {reason}", path.display()))
+        };
+        let text = std::fs::read_to_string(&path).map_err(|error| problem(format!("cannot read it: {error}")))?;
+        TabulatedPhase::from_csv(&text).map_err(|error| problem(error.to_string()))
     }
 }

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::PathBuf;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
-use super::number::{Altitude, Asymmetry, Coefficient, Length, Number};
+use super::number::{Altitude, Asymmetry, Coefficient, DropletDiameter, Fraction, Length, Number};
 use super::per_band::PerBand;
 
 /// What the air is made of.
@@ -83,7 +84,7 @@ pub enum ProfileFile {
 }
 
 /// How scattered light is spread over directions.
-#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 pub enum PhaseFile {
     /// The same in all directions.
@@ -95,10 +96,41 @@ pub enum PhaseFile {
         /// Mean cosine.
         g: Number<Asymmetry>,
     },
+    /// Two lobes of Henyey and Greenstein, Kattawar 1975.
+    DoubleHenyeyGreenstein {
+        /// Share of the first lobe.
+        weight: Number<Fraction>,
+        /// Mean cosine of the first lobe.
+        g1: Number<Asymmetry>,
+        /// Mean cosine of the second lobe.
+        g2: Number<Asymmetry>,
+    },
+    /// Blasi, Le Saëc and Schlick 1993.
+    Schlick {
+        /// Asymmetry parameter, forward above 0; the mean cosine is smaller.
+        k: Number<Asymmetry>,
+    },
     /// Cornette and Shanks 1992.
     CornetteShanks {
         /// Asymmetry parameter; the mean cosine is larger.
         g: Number<Asymmetry>,
+    },
+    /// Draine 2003.
+    Draine {
+        /// Asymmetry parameter.
+        g: Number<Asymmetry>,
+        /// Strength of the 1 + alpha cos² term.
+        alpha: Number<Coefficient>,
+    },
+    /// Water droplets by size, Jendersie and d'Eon 2023.
+    HenyeyGreensteinDraine {
+        /// Diameter of the droplets, µm.
+        droplet_diameter_um: Number<DropletDiameter>,
+    },
+    /// A table in a CSV file, for instance from Mie theory.
+    Table {
+        /// The file, relative to the scene file, with columns `theta_deg` or `cos_theta`, and `phase_per_sr`.
+        file: PathBuf,
     },
 }
 

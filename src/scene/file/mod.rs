@@ -5,7 +5,7 @@ mod medium;
 pub mod number;
 mod per_band;
 
-pub use light::{DirectionalFile, EnvironmentFile, LightsFile, PointFile, SunFile, WhenFile};
+pub use light::{LightsFile, SunFile, WhenFile};
 pub use medium::{ConstituentChange, ConstituentFile, MediumFile, PhaseFile, ProfileFile};
 pub use per_band::PerBand;
 

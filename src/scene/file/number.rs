@@ -148,6 +148,8 @@ intervals! {
     Fraction: Included(0.0), Included(1.0);
     /// The asymmetry of a phase function; at ±1 all light keeps its line and the function is no longer one.
     Asymmetry: Excluded(-1.0), Excluded(1.0);
+    /// The diameter of a water droplet, µm: the range of the published fit.
+    DropletDiameter: Included(5.0), Included(50.0);
     /// An angle above the horizontal, or a latitude, degrees.
     Elevation: Included(-90.0), Included(90.0);
     /// An azimuth, degrees.

@@ -43,11 +43,7 @@ pub fn medium() -> Medium {
 }
 
 pub fn sun() -> PresetSun {
-    PresetSun {
-        irradiance: SOLAR_IRRADIANCE,
-        angular_radius_rad: SOLAR_ANGULAR_RADIUS_RAD,
-        limb_darkening: true,
-    }
+    PresetSun { irradiance: SOLAR_IRRADIANCE, angular_radius_rad: SOLAR_ANGULAR_RADIUS_RAD, limb_darkening: true }
 }
 
 #[cfg(test)]
@@ -86,8 +82,8 @@ mod tests {
         // Their eq. 30, sea level at 45° latitude; its gravity varies with altitude, ours does not: 0.2 %.
         for (scattering, wavelength) in MOLECULAR_SCATTERING_PER_M.iter().zip(WAVELENGTHS_UM) {
             let (k, l2) = (wavelength.powi(-2), wavelength * wavelength);
-            let published =
-                0.002_152_0 * (1.045_599_6 - 341.290_61 * k - 0.902_308_50 * l2) / (1.0 + 0.002_705_988_9 * k - 85.968_563 * l2);
+            let published = 0.002_152_0 * (1.045_599_6 - 341.290_61 * k - 0.902_308_50 * l2)
+                / (1.0 + 0.002_705_988_9 * k - 85.968_563 * l2);
             let column = scattering * MOLECULAR_SCALE_HEIGHT_M;
             assert!((column / published - 1.0).abs() < 3e-3, "{column} against {published}");
         }

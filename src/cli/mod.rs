@@ -1,0 +1,41 @@
+//! The command line: one file per subcommand.
+
+mod failure;
+mod schema;
+mod stdout;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use failure::Failure;
+
+/// Skies, clouds and fog in real time on Vulkan, with a stated error.
+///
+/// Results go to standard output or the named file, everything else to standard error. Exit codes: 0 done; 1 a comparison
+/// or check failed; 2 bad input; 3 no usable Vulkan device.
+#[derive(Debug, Parser)]
+#[command(name = "welkin", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Schema(schema::Arguments),
+}
+
+/// Runs the program on the process's arguments.
+pub fn run() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Schema(arguments) => schema::run(&arguments),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("{failure}");
+            failure.exit_code()
+        }
+    }
+}
