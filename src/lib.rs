@@ -1,6 +1,5 @@
 //! Skies, clouds and fog in real time on Vulkan, with a stated error.
 
-pub mod cli;
 pub mod frame;
 pub mod gpu;
 pub mod output;

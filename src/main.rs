@@ -1,5 +1,7 @@
-//! The `welkin` program; everything it does lies in the library.
+//! The `welkin` program: a command line over the library.
+
+mod cli;
 
 fn main() -> std::process::ExitCode {
-    welkin::cli::run()
+    cli::run()
 }

@@ -10,5 +10,5 @@ pub struct Arguments {}
 
 /// Prints the schema.
 pub fn run(_: &Arguments) -> Result<(), Failure> {
-    Ok(stdout::print(&format!("{:#}", crate::scene::schema()))?)
+    Ok(stdout::print(&format!("{:#}", welkin::scene::schema()))?)
 }
