@@ -119,7 +119,7 @@ impl Settings {
                 degree_count: 3,
                 directions: Directions { below: 4, band: 3, above: 5, azimuths: 8 },
                 orders: 3,
-                sky_view_size: [64, 128],
+                sky_view_size: [80, 144],
             },
             Quality::Ultra => Self {
                 nodes_per_leg: 16,

@@ -7,10 +7,17 @@ use welkin::gpu::{DeviceRequest, Gpu, Validation, ValidationLog};
 /// One device at a time: the validation layer's state and the processor's threads are shared by all of them.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
+/// Waits until no other test of this program uses a device.
+#[allow(dead_code)]
+pub fn alone() -> MutexGuard<'static, ()> {
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Runs a test on a device with validation on. A machine without a device fails the test, and so does a single message
 /// of the validation layer, also one that comes when the device is closed.
+#[allow(dead_code)]
 pub fn with_gpu(test: impl FnOnce(&Gpu)) {
-    let _alone: MutexGuard<()> = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let _alone = alone();
     let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
     let gpu = Gpu::new(&request).unwrap_or_else(|error| panic!("{error}"));
     let log: ValidationLog = gpu.validation_log();
