@@ -6,7 +6,7 @@
 #import welkin::camera::{camera, view_direction, pixel_angle_rad}
 #import welkin::march::view_ray
 #import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
-#import welkin::sky::{ground_radiance, sky_sample, SkyDirection}
+#import welkin::sky::{air_radiance, ground_radiance, view_transmittance, SkyDirection}
 
 @group(0) @binding(8) var radiance_image: texture_storage_2d<rgba32float, write>;
 #ifdef CAPTURE
@@ -54,18 +54,16 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
     }
     let view = view_direction(pixel.xy);
     var radiance = vec3<f32>(0.0);
-    var transmittance = vec3<f32>(1.0);
+    let transmittance = view_transmittance(relative_to_light(view, 0u));
     for (var light = 0u; light < LIGHT_COUNT; light++) {
         let direction = relative_to_light(view, light);
-        let sky = sky_sample(light, direction);
-        transmittance = sky.transmittance;
         var behind = vec3<f32>(0.0);
         if direction.below_horizon {
             behind = ground_radiance(light, direction);
         } else {
             behind = disc_radiance(view, light);
         }
-        radiance += observer.lights[light].irradiance * (sky.radiance + sky.transmittance * behind);
+        radiance += observer.lights[light].irradiance * (air_radiance(light, direction) + transmittance * behind);
     }
     textureStore(radiance_image, pixel.xy, vec4<f32>(radiance, 1.0));
 #ifdef CAPTURE

@@ -218,3 +218,23 @@ fn ground_mu_s(ray: AirRay) -> f32 {
     let r_start = atmosphere.radius_m + ray.altitude_m;
     return clamp((r_start * ray.mu_s + ray.length_m * ray.nu) / atmosphere.radius_m, -1.0, 1.0);
 }
+
+// Panels of Simpson's rule on each leg where only optical depth is asked for: enough for a profile's kinks.
+const FINE_PANELS: u32 = 64u;
+
+// Optical depth along the whole ray.
+fn optical_depth_along(ray: AirRay) -> vec3<f32> {
+    var optical_depth = vec3<f32>(0.0);
+    for (var i = 0u; i < LEG_COUNT; i++) {
+        var leg = leg_of(ray, i);
+        if leg_is_empty(leg) {
+            continue;
+        }
+        for (var n = 1u; n <= FINE_PANELS; n++) {
+            let share = f32(n) / f32(FINE_PANELS);
+            let v = select(share, 1.0 - share, leg.descending);
+            leg_move(&leg, ray, v, altitude_at(ray, leg_distance_m(leg, v)), &optical_depth);
+        }
+    }
+    return optical_depth;
+}

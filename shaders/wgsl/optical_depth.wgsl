@@ -5,7 +5,7 @@
 
 #import welkin::atmosphere::atmosphere
 #import welkin::mapping
-#import welkin::march::{air_ray, leg_advance, leg_finish, leg_is_empty, leg_of, LEG_COUNT, NODE_COUNT}
+#import welkin::march::{air_ray, optical_depth_along}
 
 @group(0) @binding(6) var optical_depth_table: texture_storage_2d<rgba32float, write>;
 
@@ -18,16 +18,5 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(size));
     let start = mapping::optical_depth_from_unit(unit, atmosphere.radius_m, atmosphere.top_m);
     let ray = air_ray(start.altitude_m, start.mu, 1.0, start.mu, false);
-    var tau = vec3<f32>(0.0);
-    for (var i = 0u; i < LEG_COUNT; i++) {
-        var leg = leg_of(ray, i);
-        if leg_is_empty(leg) {
-            continue;
-        }
-        for (var n = 0u; n < NODE_COUNT; n++) {
-            leg_advance(&leg, ray, n, &tau);
-        }
-        leg_finish(&leg, ray, &tau);
-    }
-    textureStore(optical_depth_table, texel.xy, vec4<f32>(tau, 0.0));
+    textureStore(optical_depth_table, texel.xy, vec4<f32>(optical_depth_along(ray), 0.0));
 }

@@ -1,7 +1,7 @@
 // Pass: radiance and transmittance along single rays, read from the very tables that a picture is made of.
 
 #import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
-#import welkin::sky::{ground_radiance, sky_sample, SkyDirection}
+#import welkin::sky::{air_radiance, ground_radiance, view_transmittance, SkyDirection}
 
 struct ProbeRay {
     zenith_rad: f32,
@@ -28,10 +28,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let sines = sin(ray.zenith_rad) * sqrt(max(1.0 - mu_s * mu_s, 0.0));
     let nu = clamp(cos(ray.zenith_rad) * mu_s + sines * cos(ray.azimuth_rad), -1.0, 1.0);
     let direction = SkyDirection(ray.zenith_rad, ray.azimuth_rad, nu, ray.below_horizon != 0u);
-    let sky = sky_sample(0u, direction);
-    var radiance = sky.radiance;
+    let transmittance = view_transmittance(direction);
+    var radiance = air_radiance(0u, direction);
     if direction.below_horizon {
-        radiance += sky.transmittance * ground_radiance(0u, direction);
+        radiance += transmittance * ground_radiance(0u, direction);
     }
-    answers[id.x] = ProbeAnswer(observer.lights[0].irradiance * radiance, sky.transmittance);
+    answers[id.x] = ProbeAnswer(observer.lights[0].irradiance * radiance, transmittance);
 }

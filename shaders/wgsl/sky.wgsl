@@ -1,9 +1,8 @@
 #define_import_path welkin::sky
 // The sky in one direction, from the sky-view table, and the ground behind it.
 //
-// The table's layers, for each light and each half of the view sphere: optical depth along the ray, multiply
-// scattered radiance, then for each scatterer its single scattering without the phase function. All for unit
-// irradiance of the light.
+// The table's layers, for each light and each half of the view sphere: the logarithms of multiply scattered radiance,
+// then of each scatterer's single scattering without the phase function. All for unit irradiance of the light.
 //
 // Definitions: AIR (there is any), GROUND (light from the ground belongs in the picture), MULTIPLE_SCATTERING.
 
@@ -15,10 +14,10 @@
 
 @group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
 @group(0) @binding(7) var sky_view_table: texture_2d_array<f32>;
+@group(0) @binding(14) var view_optical_depth_table: texture_2d<f32>;
 
-const OPTICAL_DEPTH_LAYER: u32 = 0u;
-const MULTIPLE_LAYER: u32 = 1u;
-const SINGLE_LAYER: u32 = 2u;
+const MULTIPLE_LAYER: u32 = 0u;
+const SINGLE_LAYER: u32 = 1u;
 const LAYER_COUNT: u32 = SINGLE_LAYER + SCATTERER_COUNT;
 
 // The first layer of a light's half sphere.
@@ -36,33 +35,36 @@ struct SkyDirection {
     below_horizon: bool,
 }
 
-struct SkySample {
-    // Radiance of the air along the ray, 1/sr: per unit irradiance of the light.
-    radiance: vec3<f32>,
-    transmittance: vec3<f32>,
+// Transmittance of the air to the ground or to space.
+fn view_transmittance(direction: SkyDirection) -> vec3<f32> {
+#ifdef AIR
+    let unit = mapping::sky_view_to_unit(direction.zenith_rad, 0.0, direction.below_horizon, observer.view);
+    let half_sphere = vec2<f32>(f32(direction.below_horizon), unit.y);
+    let uv = mapping::inset(half_sphere, vec2<f32>(textureDimensions(view_optical_depth_table)));
+    return exp(-textureSampleLevel(view_optical_depth_table, table_sampler, uv, 0.0).rgb);
+#else
+    return vec3<f32>(1.0);
+#endif
 }
 
-fn sky_sample(light: u32, direction: SkyDirection) -> SkySample {
-    var sample: SkySample;
+// Radiance of the air along the ray, 1/sr: per unit irradiance of the light.
+fn air_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
+    var radiance = vec3<f32>(0.0);
 #ifdef AIR
     let unit = mapping::sky_view_to_unit(
         direction.zenith_rad, direction.azimuth_rad, direction.below_horizon, observer.view
     );
     let uv = mapping::inset(unit, vec2<f32>(textureDimensions(sky_view_table)));
     let layer = layer_of(light, direction.below_horizon);
-    let optical_depth = textureSampleLevel(sky_view_table, table_sampler, uv, layer + OPTICAL_DEPTH_LAYER, 0.0).rgb;
-    sample.transmittance = exp(-optical_depth);
 #ifdef MULTIPLE_SCATTERING
-    sample.radiance = exp(textureSampleLevel(sky_view_table, table_sampler, uv, layer + MULTIPLE_LAYER, 0.0).rgb);
+    radiance = exp(textureSampleLevel(sky_view_table, table_sampler, uv, layer + MULTIPLE_LAYER, 0.0).rgb);
 #endif
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
         let single = textureSampleLevel(sky_view_table, table_sampler, uv, layer + SINGLE_LAYER + c, 0.0).rgb;
-        sample.radiance += phase_per_sr(c, direction.nu) * exp(single);
+        radiance += phase_per_sr(c, direction.nu) * exp(single);
     }
-#else
-    sample.transmittance = vec3<f32>(1.0);
 #endif
-    return sample;
+    return radiance;
 }
 
 // Radiance that leaves the ground where a view ray meets it, 1/sr: per unit irradiance of the light.

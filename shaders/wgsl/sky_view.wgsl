@@ -10,7 +10,7 @@
     NODE_COUNT
 }
 #import welkin::observer::{light_mu_s, observer}
-#import welkin::sky::{layer_of, multiple_scattering_table, MULTIPLE_LAYER, OPTICAL_DEPTH_LAYER, SINGLE_LAYER}
+#import welkin::sky::{layer_of, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER}
 #import welkin::tables::{multiply_scattered_source, optical_depth_to_top}
 
 @group(0) @binding(8) var sky_view_image: texture_storage_2d_array<rgba32float, write>;
@@ -19,7 +19,6 @@
 const DARK: f32 = 1e-30;
 
 struct Integrals {
-    optical_depth: vec3<f32>,
     // int b T T_light dt of each scatterer, sr less than radiance: its phase function is missing.
     single: array<vec3<f32>, SCATTERER_SLOTS>,
     // Multiply scattered radiance.
@@ -55,7 +54,6 @@ fn integrate(ray: AirRay) -> Integrals {
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
         sum.single[c] *= atmosphere.constituents[c].scattering_per_m;
     }
-    sum.optical_depth = tau;
     return sum;
 }
 
@@ -81,7 +79,6 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     let nu = clamp(mu * mu_s + sines * cos(view.azimuth_rad), -1.0, 1.0);
     var sum = integrate(cut_at_shadow(view_ray(observer.altitude_m, mu, mu_s, nu, below_horizon)));
     let first = layer_of(light, below_horizon);
-    textureStore(sky_view_image, texel.xy, first + OPTICAL_DEPTH_LAYER, vec4<f32>(sum.optical_depth, 0.0));
     textureStore(sky_view_image, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(logarithm(sum.multiple), 0.0));
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
         textureStore(sky_view_image, texel.xy, first + SINGLE_LAYER + c, vec4<f32>(logarithm(sum.single[c]), 0.0));

@@ -14,6 +14,7 @@ mod probe;
 mod recording;
 mod resources;
 mod sky_view;
+mod view_optical_depth;
 
 pub use definitions::definitions;
 pub use probe::{download as download_answers, record as record_probe, upload as upload_rays};
@@ -33,7 +34,8 @@ pub struct Pass {
 }
 
 /// The tables that the sky is read from, in order.
-pub const TABLES: [Pass; 4] = [optical_depth::PASS, first_order::PASS, higher_order::PASS, sky_view::PASS];
+pub const TABLES: [Pass; 5] =
+    [optical_depth::PASS, first_order::PASS, higher_order::PASS, view_optical_depth::PASS, sky_view::PASS];
 
 /// What makes a frame of them, in order.
 pub const FRAME: [Pass; 2] = [compose::PASS, display::PASS];

@@ -17,13 +17,7 @@ pub const PASS: Pass = Pass {
             let planet = &facts.scene.planet;
             let settings = &facts.settings;
             let medium = &facts.constituents;
-            Fingerprint::of(&(
-                medium,
-                planet.radius_m,
-                planet.atmosphere_height_m,
-                settings.nodes_per_leg,
-                settings.optical_depth_size,
-            ))
+            Fingerprint::of(&(medium, planet.radius_m, planet.atmosphere_height_m, settings.optical_depth_size))
         },
         bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
     },

@@ -34,7 +34,7 @@ fn shape(facts: &Facts) -> ImageShape {
     ImageShape::D2Array(width, height, facts.sky_view_layers())
 }
 
-fn need(facts: &Facts) -> Need {
+pub(super) fn need(facts: &Facts) -> Need {
     if facts.viewpoint == Viewpoint::Underground {
         return Need::NotNeeded("the camera is below the ground".to_owned());
     }

@@ -115,7 +115,7 @@ impl<'a> Facts<'a> {
 
     /// Layers of the sky-view table.
     pub fn sky_view_layers(&self) -> u32 {
-        2 * self.light_slots() * (2 + self.groups.scatterer_count)
+        2 * self.light_slots() * (1 + self.groups.scatterer_count)
     }
 
     /// How the sky-view table sees the sphere of directions.

@@ -1,0 +1,36 @@
+//! Optical depth of the air along every view ray from the camera's altitude.
+
+use super::sky_view::need;
+use super::{Pass, Recording, RenderError};
+use crate::gpu::{ImageFormat, ImageShape, Work};
+use crate::plan::{Declaration, Facts, Fingerprint};
+
+const NAME: &str = "view_optical_depth";
+
+/// Rows between two rows of the sky view: transmittance is what an engine multiplies everything by, and rows are cheap.
+const ROWS_PER_SKY_VIEW_ROW: u32 = 4;
+
+/// The pass.
+pub const PASS: Pass = Pass {
+    declaration: Declaration {
+        name: NAME,
+        need,
+        // The same air as that of the table of optical depth, though nothing is read from it.
+        reads: &["optical_depth_table"],
+        writes: &["view_optical_depth_table"],
+        inputs: |facts| Fingerprint::of(&(facts.scene.camera.altitude_m, facts.settings.sky_view_size[1])),
+        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+    },
+    record,
+};
+
+/// Two columns, for the sky's half and the ground's. Every row of the sky view is one of its rows.
+fn shape(facts: &Facts) -> ImageShape {
+    ImageShape::D2(2, ROWS_PER_SKY_VIEW_ROW * (facts.settings.sky_view_size[1] - 1) + 1)
+}
+
+fn record(recording: &mut Recording) -> Result<(), RenderError> {
+    let shape = shape(recording.facts);
+    recording.resources.image("view_optical_depth_table", shape, ImageFormat::Rgba32Float)?;
+    recording.dispatch(NAME, &[], &[], Work::Invocations(shape.extent()))
+}
