@@ -54,7 +54,7 @@ fn assert_scores(scores: &[f64]) {
 #[test]
 fn sky_from_the_ground_matches_the_table_from_noon_to_twilight() {
     let rows = every("earth_sky.csv", 41);
-    let own = answers(&rows, |_| 500.0, Orders::All, Effort::RelativeError(0.03));
+    let own = answers(&rows, |_| 500.0, Orders::All, Effort::RelativeError(0.02));
     let scores = z_scores(&rows, &own, "total_best", "ms_mc_stderr", 0.0);
     assert_scores(&scores);
 
@@ -67,7 +67,7 @@ fn sky_from_the_ground_matches_the_table_from_noon_to_twilight() {
 #[test]
 fn views_from_any_altitude_match_the_table() {
     let rows = every("earth_views.csv", 19);
-    let own = answers(&rows, |row| row.number("observer_alt_m"), Orders::All, Effort::RelativeError(0.03));
+    let own = answers(&rows, |row| row.number("observer_alt_m"), Orders::All, Effort::RelativeError(0.02));
     assert_scores(&z_scores(&rows, &own, "total", "total_stderr", 5e-4));
     for (row, own) in rows.iter().zip(&own) {
         let (table, own) = (row.number("transmittance"), own.transmittance[row.band()]);

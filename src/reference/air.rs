@@ -73,6 +73,11 @@ impl Air {
         self.columns.cuts_m()
     }
 
+    /// Lower altitudes of the shells of constant majorant, m, ascending.
+    pub fn shell_bounds_m(&self) -> impl DoubleEndedIterator<Item = f64> + '_ {
+        self.shells.iter().map(|shell| shell.0)
+    }
+
     /// The matter at an altitude; `density` receives the densities.
     pub fn local<'a>(&'a self, altitude_m: f64, density: &'a mut Vec<f64>) -> Local<'a> {
         density.clear();

@@ -3,7 +3,10 @@
 use glam::DVec3;
 use welkin_lut::{BAND_COUNT, Bands};
 
+use super::guide::Guide;
 use super::shape::End;
+use super::single;
+use super::spectrum;
 use super::transport::breakpoints;
 use super::world::World;
 
@@ -13,8 +16,9 @@ const CELLS: f64 = 24.0;
 const CELL_DEPTH: f64 = 0.4;
 /// Optical depth beyond which cells are no longer refined.
 const OPAQUE: f64 = 12.0;
-/// Shares of the density of distances: scattering × transmittance; scattering alone; length.
-const SHARES: [f64; 3] = [0.7, 0.2, 0.1];
+/// Shares of the density of distances: scattering × transmittance × light from the sunward horizon (in twilight);
+/// scattering × transmittance; scattering; length.
+const SHARES: [f64; 4] = [0.4, 0.35, 0.15, 0.1];
 
 /// A piecewise constant probability density of distances, and a probability of the ground at the end.
 #[derive(Debug, Clone)]
@@ -59,32 +63,32 @@ impl FirstEvent {
                 depth[j] += step[j];
             }
         }
+        let glow = Guide::new(world).and_then(|guide| glow(world, &guide, p, d, &edges));
+        let glowing = match glow {
+            Some(glow) => seen.iter().zip(glow).map(|(&seen, glow)| spectrum::product(seen, glow)).collect(),
+            None => seen.clone(),
+        };
         let reflected: Bands = match span.end {
             End::Ground => std::array::from_fn(|j| world.ground_albedo[j] * (-depth[j]).exp()),
             End::Space => [0.0; BAND_COUNT],
         };
-        Self::from_weights(edges, &seen, &thin, reflected)
+        Self::from_weights(edges, &[glowing, seen, thin], reflected)
     }
 
-    fn from_weights(edges: Vec<f64>, seen: &[Bands], thin: &[Bands], reflected: Bands) -> Option<Self> {
-        let total = |cells: &[Bands], j: usize| cells.iter().map(|cell| cell[j]).sum::<f64>();
-        let (all_seen, all_thin): (Bands, Bands) =
-            (std::array::from_fn(|j| total(seen, j)), std::array::from_fn(|j| total(thin, j)));
+    fn from_weights(edges: Vec<f64>, densities: &[Vec<Bands>; 3], reflected: Bands) -> Option<Self> {
+        let cells = edges.len() - 1;
         let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
-        let ground =
-            (0..BAND_COUNT).map(|j| share(reflected[j], reflected[j] + all_seen[j])).sum::<f64>() / BAND_COUNT as f64;
-        let length = edges[edges.len() - 1] - edges[0];
-        let mut weights: Vec<f64> = (0..seen.len())
-            .map(|i| {
-                let mean = |cells: &[Bands], all: &Bands| -> f64 {
-                    (0..BAND_COUNT).map(|j| share(cells[i][j], all[j])).sum::<f64>()
-                };
-                SHARES[0] * mean(seen, &all_seen)
-                    + SHARES[1] * mean(thin, &all_thin)
-                    + SHARES[2] * BAND_COUNT as f64 * (edges[i + 1] - edges[i]) / length
-            })
-            .collect();
-        if all_thin == [0.0; BAND_COUNT] {
+        let totals: [Bands; 3] =
+            std::array::from_fn(|k| std::array::from_fn(|j| densities[k].iter().map(|cell| cell[j]).sum::<f64>()));
+        let bands = BAND_COUNT as f64;
+        let ground = (0..BAND_COUNT).map(|j| share(reflected[j], reflected[j] + totals[1][j])).sum::<f64>() / bands;
+        let length = edges[cells] - edges[0];
+        let weight = |i: usize| -> f64 {
+            let mean = |k: usize| (0..BAND_COUNT).map(|j| share(densities[k][i][j], totals[k][j])).sum::<f64>() / bands;
+            (0..3).map(|k| SHARES[k] * mean(k)).sum::<f64>() + SHARES[3] * (edges[i + 1] - edges[i]) / length
+        };
+        let mut weights: Vec<f64> = (0..cells).map(weight).collect();
+        if totals[2] == spectrum::ZERO {
             weights.fill(0.0);
         }
         let sum: f64 = weights.iter().sum();
@@ -118,6 +122,22 @@ impl FirstEvent {
         let t_m = a + (b - a) * (u - below) / probability;
         Sample { t_m, on_ground: false, probability: probability / (b - a) }
     }
+}
+
+/// In twilight: light of the first order that arrives at the middle of each cell from the sunward horizon. `None` where
+/// no cell lies in twilight.
+fn glow(world: &World, guide: &Guide, p: DVec3, d: DVec3, edges: &[f64]) -> Option<Vec<Bands>> {
+    let middles = edges.windows(2).map(|ends| p + d * (0.5 * (ends[0] + ends[1])));
+    let of = |at: DVec3| -> Option<Bands> {
+        let lobe = guide.lobe(world, at, 0)?;
+        let mut sum = spectrum::ZERO;
+        for u in [0.2, 0.4, 0.6, 0.8] {
+            let first = single::first_order(world, at, lobe.sample(u, 0.5), 0.3);
+            spectrum::accumulate(&mut sum, 0.25, first.single.value);
+        }
+        Some(sum)
+    };
+    middles.map(of).collect()
 }
 
 fn cell_depth(world: &World, p: DVec3, d: DVec3, from_m: f64, to_m: f64) -> Bands {

@@ -14,13 +14,14 @@ use super::guide::Guide;
 use super::light::Emitter;
 use super::matter::{Local, around};
 use super::random::Draw;
+use super::segment::Segment;
 use super::shape::End;
 use super::spectrum::{self, sum};
 use super::tally::Tally;
 use super::world::{Source, World};
 
 /// Below this share of its first weight a walk is played for its life.
-const ROULETTE_BELOW: f64 = 0.25;
+const ROULETTE_BELOW: f64 = 0.02;
 
 /// A walk between two events.
 #[derive(Debug, Clone, Copy)]
@@ -44,15 +45,16 @@ pub struct State {
 /// Walks through one world.
 #[derive(Debug)]
 pub struct Walker<'a> {
-    world: &'a World,
+    pub(super) world: &'a World,
     guide: Option<Guide>,
-    density: Vec<f64>,
+    pub(super) density: Vec<f64>,
+    pub(super) segment: Segment,
     /// The random numbers.
     pub draw: Draw,
 }
 
 /// A place where light turns into the walk's direction.
-enum Vertex<'a> {
+pub(super) enum Vertex<'a> {
     /// Matter, and the rate with which walks collide there (1/m).
     Medium(Local<'a>, f64),
     /// Ground with this albedo and normal.
@@ -72,7 +74,7 @@ impl Vertex<'_> {
 impl<'a> Walker<'a> {
     /// A walker with its own random numbers.
     pub fn new(world: &'a World, draw: Draw) -> Self {
-        Self { world, guide: Guide::new(world), density: Vec::new(), draw }
+        Self { world, guide: Guide::new(world), density: Vec::new(), segment: Segment::default(), draw }
     }
 
     /// Follows a walk to its end. Light that it finds is added to `tally`.
@@ -87,6 +89,9 @@ impl<'a> Walker<'a> {
             self.escape(state, tally);
             return false;
         };
+        if let Some(guide) = self.guide.filter(|guide| guide.spreads(self.world, p)) {
+            return self.spread(state, &span, guide.sun(), tally);
+        }
         let mut t = span.start_m;
         while let Some((found, source)) = self.world.tentative(p, d, t, span.end_m, &mut self.draw) {
             t = found.t_m;
@@ -109,7 +114,7 @@ impl<'a> Walker<'a> {
     }
 
     /// The matter of one component at a point.
-    fn local<'b>(&self, at: DVec3, source: Source, density: &'b mut Vec<f64>) -> Local<'b>
+    pub(super) fn local<'b>(&self, at: DVec3, source: Source, density: &'b mut Vec<f64>) -> Local<'b>
     where
         'a: 'b,
     {
@@ -166,7 +171,7 @@ impl<'a> Walker<'a> {
         let mut density = std::mem::take(&mut self.density);
         let local = self.local(at, Source::Air, &mut density);
         let vertex = Vertex::Medium(local, rate);
-        state.reference = (0..BAND_COUNT).map(|j| state.weight[j] * local.scattering()[j] / rate).sum();
+        state.reference = sum(spectrum::product(state.weight, local.scattering())) / rate;
         if state.reference > 0.0 {
             self.next_event(&state, at, &vertex, lights, tally);
             self.turn(&mut state, at, &vertex);
@@ -205,7 +210,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Adds the light that arrives at a vertex straight from the lights, one sample of each.
-    fn next_event(
+    pub(super) fn next_event(
         &mut self,
         state: &State,
         at: DVec3,
@@ -239,7 +244,7 @@ impl<'a> Walker<'a> {
     }
 
     /// The walk has left the world: it sees the lights that have an extent. A camera's own ray does not see discs.
-    fn escape(&self, state: &State, tally: &mut Tally) {
+    pub(super) fn escape(&self, state: &State, tally: &mut Tally) {
         for light in &self.world.lights {
             if state.pdf_per_sr.is_none() && !matches!(light, Emitter::Environment { .. }) {
                 continue;
@@ -252,7 +257,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Chooses a new direction at a vertex and weighs it.
-    fn turn(&mut self, state: &mut State, at: DVec3, vertex: &Vertex) {
+    pub(super) fn turn(&mut self, state: &mut State, at: DVec3, vertex: &Vertex) {
         let direction = self.sample(state, at, vertex);
         let pdf = self.pdf(state, at, vertex, direction);
         let response = vertex.response(state.direction, direction);
@@ -275,9 +280,9 @@ impl<'a> Walker<'a> {
         }
         match vertex {
             Vertex::Medium(local, _) => {
-                let mut choice = choice * importance(local, &state.weight).sum::<f64>();
+                let mut choice = choice * importance(local, state.weight).sum::<f64>();
                 let mut chosen = 0;
-                for (i, share) in importance(local, &state.weight).enumerate() {
+                for (i, share) in importance(local, state.weight).enumerate() {
                     if share > 0.0 {
                         chosen = i;
                         if choice < share {
@@ -299,7 +304,7 @@ impl<'a> Walker<'a> {
             Vertex::Medium(local, _) => {
                 let cosine = state.direction.dot(direction).clamp(-1.0, 1.0);
                 let (mut total, mut weighted) = (0.0, 0.0);
-                for (share, matter) in importance(local, &state.weight).zip(local.matter) {
+                for (share, matter) in importance(local, state.weight).zip(local.matter) {
                     if share > 0.0 {
                         total += share;
                         weighted += share * matter.phase.value(cosine);
@@ -316,7 +321,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Russian roulette.
-    fn survives(&mut self, state: &mut State) -> bool {
+    pub(super) fn survives(&mut self, state: &mut State) -> bool {
         let share = sum(state.weight) / (ROULETTE_BELOW * state.reference);
         if share >= 1.0 {
             return true;
@@ -330,7 +335,7 @@ impl<'a> Walker<'a> {
 }
 
 /// How much each constituent scatters, over the bands as the walk weighs them.
-fn importance<'b>(local: &'b Local, weight: &'b Bands) -> impl Iterator<Item = f64> + 'b {
+fn importance(local: &Local, weight: Bands) -> impl Iterator<Item = f64> {
     local.matter.iter().zip(local.density).map(move |(matter, density)| {
         density * (0..BAND_COUNT).map(|j| weight[j] * matter.scattering_per_m[j]).sum::<f64>()
     })
