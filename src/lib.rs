@@ -8,4 +8,5 @@ pub mod plan;
 pub mod probe;
 pub mod reference;
 pub mod renderer;
+pub mod report;
 pub mod scene;

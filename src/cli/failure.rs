@@ -7,15 +7,21 @@ use std::process::ExitCode;
 /// Why a command did not succeed, by exit code.
 #[derive(Debug)]
 pub enum Failure {
+    /// A comparison or check failed; the message says by how much. Exit code 1.
+    Check(String),
     /// What the user gave cannot be used. Exit code 2.
     Input(anyhow::Error),
+    /// There is no usable Vulkan device. Exit code 3.
+    NoDevice(anyhow::Error),
 }
 
 impl Failure {
     /// The exit code that scripts rely on.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
+            Self::Check(_) => 1,
             Self::Input(_) => 2,
+            Self::NoDevice(_) => 3,
         })
     }
 }
@@ -30,8 +36,9 @@ impl<E: Error + Send + Sync + 'static> From<E> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Check(message) => write!(f, "failed: {message}"),
             // The alternate form joins an error with its causes.
-            Self::Input(error) => write!(f, "error: {error:#}"),
+            Self::Input(error) | Self::NoDevice(error) => write!(f, "error: {error:#}"),
         }
     }
 }

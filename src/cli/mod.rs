@@ -1,6 +1,10 @@
 //! The command line: one file per subcommand.
 
+mod backend;
+mod compare;
 mod failure;
+mod limit;
+mod probe;
 mod schema;
 mod stdout;
 
@@ -23,12 +27,16 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Compare(compare::Arguments),
+    Probe(probe::Arguments),
     Schema(schema::Arguments),
 }
 
 /// Runs the program on the process's arguments.
 pub fn run() -> ExitCode {
     let outcome = match Cli::parse().command {
+        Command::Compare(arguments) => compare::run(&arguments),
+        Command::Probe(arguments) => probe::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
     };
     match outcome {

@@ -2,7 +2,8 @@
 
 use welkin_lut::{BAND_COUNT, Bands};
 
-use crate::scene::{Light, Scene};
+use crate::frame::Frame;
+use crate::scene::{Light, Scene, ToneMap};
 
 /// What radiance is multiplied by before the tone map: 2^EV, and a white balance in which the first directional light
 /// is white above the air, as a camera set to daylight sees it.
@@ -14,4 +15,103 @@ pub fn exposure(scene: &Scene) -> Bands {
     let white = white.unwrap_or([1.0; BAND_COUNT]);
     let mean = white.iter().sum::<f64>() / BAND_COUNT as f64;
     white.map(|irradiance| scene.display.exposure_ev.exp2() * mean / irradiance)
+}
+
+/// Exponent of the filmic curve, its contrast in the shadows. At middle grey the slope on doubly logarithmic axes is
+/// 1.3 (1 - 0.18) = 1.07.
+const CONTRAST: f64 = 1.3;
+
+/// 0.18^1.3 (1/0.18 - 1), with which the filmic curve leaves middle grey, 0.18, where it is.
+const MIDDLE_GREY: f64 = 0.490_225_17;
+
+/// Radiance above which everything is white; it keeps the powers within f32.
+const WHITEST: f64 = 1e9;
+
+/// From exposed radiance in [0, ∞[ to linear light in [0, 1].
+///
+/// The filmic curve takes the strongest band m to t = m^c / (m^c + k), a sigmoid in log m as film and the eye have it
+/// (Naka & Rushton 1966), with c = 1.3 and k such that 0.18 stays 0.18. The other bands keep their ratio to m, so that
+/// hue does not turn as it does where each band has its own curve, and all move towards white by the share t³: strong
+/// light is white, and a blue sky stays blue.
+pub fn tone_map(tone_map: ToneMap, exposed: Bands) -> Bands {
+    let exposed = exposed.map(|band| band.max(0.0));
+    let strongest = exposed.iter().fold(0.0_f64, |strongest, &band| strongest.max(band));
+    match tone_map {
+        ToneMap::None => exposed.map(|band| band.min(1.0)),
+        ToneMap::Filmic if strongest == 0.0 => [0.0; BAND_COUNT],
+        ToneMap::Filmic => {
+            let powered = strongest.min(WHITEST).powf(CONTRAST);
+            let t = powered / (powered + MIDDLE_GREY);
+            let white = t * t * t;
+            exposed.map(|band| t * (band / strongest * (1.0 - white) + white))
+        }
+    }
+}
+
+/// From linear light in [0, 1] to the value in [0, 1] that a screen is sent, IEC 61966-2-1.
+pub fn srgb_encoded(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// A frame as sRGB bytes, three a pixel, row by row from the top left; radiance is multiplied by `exposure` first.
+pub fn picture(frame: &Frame, exposure: Bands, curve: ToneMap) -> Vec<u8> {
+    let pixel = |radiance: &[f32; 3]| {
+        let exposed = std::array::from_fn(|band| f64::from(radiance[band]) * exposure[band]);
+        tone_map(curve, exposed).map(|linear| (255.0 * srgb_encoded(linear)).round() as u8)
+    };
+    frame.radiance.iter().flat_map(pixel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn filmic(exposed: Bands) -> Bands {
+        tone_map(ToneMap::Filmic, exposed)
+    }
+
+    #[test]
+    fn middle_grey_stays_and_grey_stays_grey() {
+        assert!((filmic([0.18; 3])[0] - 0.18).abs() < 1e-7);
+        for stop in -20..20 {
+            let [r, g, b] = filmic([f64::from(stop).exp2(); 3]);
+            assert!(r == g && g == b);
+        }
+    }
+
+    #[test]
+    fn more_light_is_never_darker_and_never_beyond_white() {
+        for colour in [[1.0, 1.0, 1.0], [0.2, 0.4, 1.0], [1.0, 0.5, 0.0], [0.0, 0.0, 1.0]] {
+            let mut darker = [0.0; 3];
+            for step in -200..400 {
+                let light = colour.map(|band: f64| band * (f64::from(step) / 10.0).exp2());
+                let shown = filmic(light);
+                assert!((0..3).all(|band| (darker[band]..=1.0).contains(&shown[band])), "{light:?} gave {shown:?}");
+                darker = shown;
+            }
+        }
+    }
+
+    #[test]
+    fn hue_does_not_turn_with_exposure() {
+        // Where the middle band lies between the weakest and the strongest is the hue.
+        let hue = |[weak, middle, strong]: Bands| (middle - weak) / (strong - weak);
+        for stop in -10..7 {
+            let light = [0.1, 0.4, 1.0].map(|band: f64| band * f64::from(stop).exp2());
+            assert!((hue(filmic(light)) - hue(light)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_sun_is_white_and_night_is_black() {
+        assert_eq!(filmic([0.0; 3]), [0.0; 3]);
+        assert!(filmic([3e12, 1e12, 1e12]).iter().all(|&band| band > 0.9999));
+    }
+
+    #[test]
+    fn srgb_has_its_published_values() {
+        // Linear 0.5 is 188/255 to rounding, and both branches meet.
+        assert_eq!((255.0 * srgb_encoded(0.5)).round(), 188.0);
+        assert!((srgb_encoded(0.003_130_8) - srgb_encoded(0.003_130_81)).abs() < 1e-6);
+    }
 }

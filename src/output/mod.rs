@@ -1,3 +1,12 @@
 //! Files that pictures become.
 
+mod atomic_file;
 pub mod display;
+mod error;
+mod exr_file;
+mod png_file;
+
+pub use atomic_file::AtomicFile;
+pub use error::OutputError;
+pub use exr_file::{read_exr, write_exr};
+pub use png_file::write_png;

@@ -1,0 +1,108 @@
+//! `welkin probe`: radiance along single rays.
+
+mod error;
+mod table;
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use welkin::output::AtomicFile;
+use welkin::plan::{Quality, Settings};
+use welkin::probe::{Orders, Ray, RayRadiance};
+use welkin::reference::{self, Effort};
+use welkin::scene::Scene;
+
+use super::Failure;
+use super::backend::{Backend, failure, open_renderer};
+use table::RayTable;
+
+/// Share of the radiance that one standard error may be where `--samples` is not given.
+const RELATIVE_ERROR: f64 = 0.01;
+
+/// Compute the radiance along rays from a CSV file
+///
+/// The rays' columns are altitude_m, view_zenith_deg, view_azimuth_deg, sun_zenith_deg and sun_azimuth_deg, in any order;
+/// others are kept. The result has the same rows and radiance_r,g,b (the sun's disc left out), transmittance_r,g,b and
+/// stderr_r,g,b.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// The scene file; its first directional light stands where each row says
+    scene: PathBuf,
+    /// The rays, CSV
+    #[arg(long, value_name = "CSV")]
+    rays: PathBuf,
+    /// The result, CSV
+    #[arg(long, value_name = "CSV")]
+    out: PathBuf,
+    /// What computes light
+    #[arg(long, value_enum, default_value = "gpu")]
+    backend: Backend,
+    /// How accurate the gpu backend is: low, medium (default), high or ultra
+    #[arg(long, value_name = "Q")]
+    quality: Option<Quality>,
+    /// The gpu backend's device, by a part of its name or its index
+    #[arg(long, value_name = "NAME")]
+    device: Option<String>,
+    /// Walks of the reference backend for each ray; by default as many as bring one standard error to 1 %
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    samples: Option<u64>,
+    /// Which orders of scattering count
+    #[arg(long, value_enum, default_value = "all")]
+    orders: OrdersArgument,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum OrdersArgument {
+    /// All of them, and light from the ground
+    All,
+    /// Light scattered exactly once in the air
+    Single,
+}
+
+/// Reads the rays, traces them and writes the result.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    check_backend_options(arguments)?;
+    let scene = Scene::read(&arguments.scene)?;
+    let table = RayTable::read(&arguments.rays, scene.planet.radius_m)?;
+    let out = AtomicFile::create(&arguments.out)?;
+    let answers = trace(arguments, &scene, table.rays())?;
+    Ok(out.write_all(&table.with_answers(&answers)?)?)
+}
+
+/// An option that the chosen backend would not heed is refused rather than ignored.
+fn check_backend_options(arguments: &Arguments) -> Result<(), Failure> {
+    let unused = match arguments.backend {
+        Backend::Gpu => [("--samples", arguments.samples.is_some()), ("", false)],
+        Backend::Reference => [("--quality", arguments.quality.is_some()), ("--device", arguments.device.is_some())],
+    };
+    match unused.iter().find(|(_, given)| *given) {
+        Some((option, _)) => {
+            let (backend, other) = match arguments.backend {
+                Backend::Gpu => ("gpu", "reference"),
+                Backend::Reference => ("reference", "gpu"),
+            };
+            Err(Failure::Input(anyhow::anyhow!(
+                "{option} says nothing to the {backend} backend; leave it out or choose --backend {other}"
+            )))
+        }
+        None => Ok(()),
+    }
+}
+
+fn trace(arguments: &Arguments, scene: &Scene, rays: &[Ray]) -> Result<Vec<RayRadiance>, Failure> {
+    let orders = match arguments.orders {
+        OrdersArgument::All => Orders::All,
+        OrdersArgument::Single => Orders::Single,
+    };
+    match arguments.backend {
+        Backend::Gpu => {
+            let settings = Settings::of(arguments.quality.unwrap_or_default());
+            let mut renderer = open_renderer(arguments.device.as_deref())?;
+            renderer.probe(scene, settings, rays, orders).map_err(failure)
+        }
+        Backend::Reference => {
+            let effort = arguments.samples.map_or(Effort::RelativeError(RELATIVE_ERROR), Effort::Walks);
+            Ok(reference::probe(scene, rays, orders, effort, 0))
+        }
+    }
+}

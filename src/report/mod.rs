@@ -1,0 +1,5 @@
+//! How far one picture is from another.
+
+mod metrics;
+
+pub use metrics::{Comparison, MetricsError, RelativeErrors, compare};
