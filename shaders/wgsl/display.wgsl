@@ -13,11 +13,22 @@ struct Display {
 
 @group(0) @binding(2) var<uniform> display: Display;
 
+// The filmic curve's exponent; the constant that keeps 0.18 where it is; light above which everything is white.
+const CONTRAST: f32 = 1.3;
+const MIDDLE_GREY: f32 = 0.49022517;
+const WHITEST: f32 = 1e9;
+
 // From [0, inf[ to [0, 1].
 fn tone_map(exposed: vec3<f32>) -> vec3<f32> {
 #ifdef FILMIC
-    // The share of film grains that at least one photon has met.
-    return 1.0 - exp(-exposed);
+    // The strongest band follows the curve, the others keep their ratio to it, and all move to white with it.
+    let strongest = max(exposed.r, max(exposed.g, exposed.b));
+    if strongest <= 0.0 {
+        return vec3<f32>(0.0);
+    }
+    let powered = pow(min(strongest, WHITEST), CONTRAST);
+    let t = powered / (powered + MIDDLE_GREY);
+    return t * mix(exposed / strongest, vec3<f32>(1.0), t * t * t);
 #else
     return min(exposed, vec3<f32>(1.0));
 #endif
