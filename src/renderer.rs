@@ -36,7 +36,24 @@ pub struct Timings {
     pub clock: Option<Clock>,
 }
 
+impl Timings {
+    /// Those of a plan that did not run.
+    pub fn unmeasured(plan: Plan) -> Self {
+        Self { plan, milliseconds: BTreeMap::new(), clock: None }
+    }
+}
+
 impl Renderer {
+    /// What a scene's first frame would run; needs no device.
+    ///
+    /// # Errors
+    /// [`RenderError::Plan`] when the scene asks for more than the renderer can do.
+    pub fn plan(scene: &Scene, settings: Settings, outputs: Outputs) -> Result<Plan, RenderError> {
+        let facts = Facts::new(scene, settings, Orders::All, outputs)?;
+        let declarations: Vec<_> = TABLES.iter().chain(&FRAME).map(|pass| pass.declaration).collect();
+        Ok(Plan::new(&facts, &History::default(), &declarations))
+    }
+
     /// Opens a device.
     ///
     /// # Errors

@@ -2,9 +2,12 @@
 
 mod backend;
 mod compare;
+mod explain;
 mod failure;
 mod limit;
+mod pass_table;
 mod probe;
+mod render;
 mod schema;
 mod stdout;
 
@@ -28,7 +31,9 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Compare(compare::Arguments),
+    Explain(explain::Arguments),
     Probe(probe::Arguments),
+    Render(render::Arguments),
     Schema(schema::Arguments),
 }
 
@@ -36,7 +41,9 @@ enum Command {
 pub fn run() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),
+        Command::Render(arguments) => render::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
     };
     match outcome {

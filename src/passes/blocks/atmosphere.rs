@@ -15,34 +15,34 @@ const MAX_LOBES: usize = 2;
 /// WGSL `PhaseLobe`: scale (1 + quadratic ν²) (gap + slope (1 - ν))^(-exponent).
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-struct PhaseLobeBlock {
-    scale_per_sr: f32,
-    quadratic: f32,
-    gap: f32,
-    slope: f32,
-    exponent: f32,
-    padding: [f32; 3],
+pub(super) struct PhaseLobeBlock {
+    pub(super) scale_per_sr: f32,
+    pub(super) quadratic: f32,
+    pub(super) gap: f32,
+    pub(super) slope: f32,
+    pub(super) exponent: f32,
+    pub(super) padding: [f32; 3],
 }
 
 /// WGSL `Constituent`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-struct ConstituentBlock {
-    scattering_per_m: [f32; 3],
-    profile_a: f32,
-    extinction_per_m: [f32; 3],
-    profile_b: f32,
-    lobes: [PhaseLobeBlock; MAX_LOBES],
+pub(super) struct ConstituentBlock {
+    pub(super) scattering_per_m: [f32; 3],
+    pub(super) profile_a: f32,
+    pub(super) extinction_per_m: [f32; 3],
+    pub(super) profile_b: f32,
+    pub(super) lobes: [PhaseLobeBlock; MAX_LOBES],
 }
 
 /// WGSL `Atmosphere` up to its array of constituents.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-struct AtmosphereHeader {
-    ground_albedo: [f32; 3],
-    radius_m: f32,
-    top_m: f32,
-    padding: [f32; 3],
+pub(super) struct AtmosphereHeader {
+    pub(super) ground_albedo: [f32; 3],
+    pub(super) radius_m: f32,
+    pub(super) top_m: f32,
+    pub(super) padding: [f32; 3],
 }
 
 impl PhaseLobeBlock {

@@ -16,3 +16,78 @@ use welkin_lut::Bands;
 fn vec3(bands: Bands) -> [f32; 3] {
     bands.map(|value| value as f32)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::atmosphere::{AtmosphereHeader, ConstituentBlock, PhaseLobeBlock};
+    use super::observer::{DirectionalLightBlock, ObserverHeader, SkyViewRangeBlock};
+    use super::*;
+    use crate::passes::definitions;
+    use crate::plan::{Facts, Outputs, Quality, Settings};
+    use crate::probe::Orders;
+    use crate::scene::Scene;
+    use std::mem::offset_of;
+    use std::path::Path;
+    use welkin_shaders::{Shader, compile};
+
+    fn shader(pass: &str) -> Shader {
+        let text = "preset = \"earth\"\n[sun]\nelevation_deg = 30\nazimuth_deg = 0\n";
+        let scene = Scene::parse(text, Path::new("test.toml")).unwrap();
+        let facts = Facts::new(&scene, Settings::of(Quality::Low), Orders::All, Outputs::default()).unwrap();
+        compile(pass, &definitions(&facts)).unwrap()
+    }
+
+    /// Offsets of a shader's fields by name; padding has no meaning.
+    fn offsets(shader: &Shader, name: &str) -> Vec<(String, usize)> {
+        let layout = shader.struct_layout(name).unwrap_or_else(|| panic!("{name} is not in the shader"));
+        let fields = layout.fields.iter().filter(|field| !field.name.starts_with("padding"));
+        fields.map(|field| (field.name.clone(), field.offset as usize)).collect()
+    }
+
+    fn size(shader: &Shader, name: &str) -> usize {
+        shader.struct_layout(name).unwrap().size as usize
+    }
+
+    macro_rules! assert_layout {
+        ($shader:expr, $name:literal, $block:ty, [$($field:ident),*]) => {
+            let host: Vec<(String, usize)> =
+                vec![$((stringify!($field).to_owned(), offset_of!($block, $field))),*];
+            assert_eq!(offsets(&$shader, $name), host, "{}", $name);
+        };
+    }
+
+    #[test]
+    fn blocks_lie_in_memory_as_the_shaders_declare_them() {
+        let compose = shader("compose");
+        assert_layout!(compose, "Camera", CameraBlock, [forward, half_width, right, half_height, up, size]);
+        assert_eq!(size(&compose, "Camera"), size_of::<CameraBlock>());
+        assert_layout!(
+            compose,
+            "DirectionalLight",
+            DirectionalLightBlock,
+            [direction, azimuth_rad, irradiance, angular_radius_rad, limb_exponent]
+        );
+        assert_eq!(size(&compose, "DirectionalLight"), size_of::<DirectionalLightBlock>());
+        assert_layout!(compose, "SkyViewRange", SkyViewRangeBlock, [horizon_rad, sky_end_rad, natural_y, snapped_y]);
+        assert_layout!(compose, "PhaseLobe", PhaseLobeBlock, [scale_per_sr, quadratic, gap, slope, exponent]);
+        assert_eq!(size(&compose, "PhaseLobe"), size_of::<PhaseLobeBlock>());
+        assert_layout!(
+            compose,
+            "Constituent",
+            ConstituentBlock,
+            [scattering_per_m, profile_a, extinction_per_m, profile_b, lobes]
+        );
+        assert_eq!(size(&compose, "Constituent"), size_of::<ConstituentBlock>());
+        let gauss = shader("first_order");
+        assert_layout!(gauss, "GaussNode", GaussNodeBlock, [abscissa, weight]);
+        assert_eq!(size(&gauss, "GaussNode"), size_of::<GaussNodeBlock>());
+    }
+
+    #[test]
+    fn arrays_follow_their_headers_without_a_gap() {
+        let compose = shader("compose");
+        let end = |name: &str| offsets(&compose, name).last().cloned().unwrap();
+        assert_eq!(end("Observer"), ("lights".to_owned(), size_of::<ObserverHeader>()));
+        assert_eq!(end("Atmosphere"), ("constituents".to_owned(), size_of::<AtmosphereHeader>()));
+    }
+}

@@ -11,32 +11,32 @@ use crate::scene::DirectionalLight;
 /// WGSL `DirectionalLight`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-struct DirectionalLightBlock {
-    direction: [f32; 3],
-    azimuth_rad: f32,
-    irradiance: [f32; 3],
-    angular_radius_rad: f32,
-    limb_exponent: [f32; 3],
-    padding: f32,
+pub(super) struct DirectionalLightBlock {
+    pub(super) direction: [f32; 3],
+    pub(super) azimuth_rad: f32,
+    pub(super) irradiance: [f32; 3],
+    pub(super) angular_radius_rad: f32,
+    pub(super) limb_exponent: [f32; 3],
+    pub(super) padding: f32,
 }
 
 /// WGSL `SkyViewRange`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-struct SkyViewRangeBlock {
-    horizon_rad: f32,
-    sky_end_rad: f32,
-    natural_y: f32,
-    snapped_y: f32,
+pub(super) struct SkyViewRangeBlock {
+    pub(super) horizon_rad: f32,
+    pub(super) sky_end_rad: f32,
+    pub(super) natural_y: f32,
+    pub(super) snapped_y: f32,
 }
 
 /// WGSL `Observer` up to its array of lights.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-struct ObserverHeader {
-    altitude_m: f32,
-    padding: [f32; 3],
-    view: SkyViewRangeBlock,
+pub(super) struct ObserverHeader {
+    pub(super) altitude_m: f32,
+    pub(super) padding: [f32; 3],
+    pub(super) view: SkyViewRangeBlock,
 }
 
 /// Solar limb darkening I(μ) = μ^k, k = -0.023 + 0.292 µm / λ: Hestroffer & Magnan 1998, A&A 333, 338, eq. 5.

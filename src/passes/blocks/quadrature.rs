@@ -9,9 +9,9 @@ use crate::plan::Settings;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct GaussNodeBlock {
-    abscissa: f32,
-    weight: f32,
-    padding: [f32; 2],
+    pub(super) abscissa: f32,
+    pub(super) weight: f32,
+    pub(super) padding: [f32; 2],
 }
 
 fn rule(n: u32) -> impl Iterator<Item = GaussNodeBlock> {
