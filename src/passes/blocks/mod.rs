@@ -31,8 +31,7 @@ mod tests {
     use welkin_shaders::{Shader, compile};
 
     fn shader(pass: &str) -> Shader {
-        let text = "preset = \"earth\"\n[sun]\nelevation_deg = 30\nazimuth_deg = 0\n";
-        let scene = Scene::parse(text, Path::new("test.toml")).unwrap();
+        let scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/noon.toml")).unwrap();
         let facts = Facts::new(&scene, Settings::of(Quality::Low), Orders::All, Outputs::default()).unwrap();
         compile(pass, &definitions(&facts)).unwrap()
     }
