@@ -1,7 +1,5 @@
 //! The picture that every backend returns: one type at the door to files, comparisons and windows.
 
-pub mod exr;
-
 /// Linear radiance and what belongs to it, row by row from the top left pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {

@@ -2,7 +2,11 @@
 
 use std::error::Error;
 use std::fmt;
+use std::path::PathBuf;
 use std::process::ExitCode;
+
+/// Exit code of a command that was interrupted: 128 and the number of SIGINT, as shells count.
+pub const INTERRUPTED: u8 = 130;
 
 /// Why a command did not succeed, by exit code.
 #[derive(Debug)]
@@ -13,6 +17,8 @@ pub enum Failure {
     Input(anyhow::Error),
     /// There is no usable Vulkan device. Exit code 3.
     NoDevice(anyhow::Error),
+    /// The user interrupted; `--resume` goes on from this checkpoint. Exit code [`INTERRUPTED`].
+    Interrupted(PathBuf),
 }
 
 impl Failure {
@@ -22,6 +28,7 @@ impl Failure {
             Self::Check(_) => 1,
             Self::Input(_) => 2,
             Self::NoDevice(_) => 3,
+            Self::Interrupted(_) => INTERRUPTED,
         })
     }
 }
@@ -37,6 +44,9 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Check(message) => write!(f, "failed: {message}"),
+            Self::Interrupted(checkpoint) => {
+                write!(f, "interrupted; --resume goes on from '{}'", checkpoint.display())
+            }
             // The alternate form joins an error with its causes.
             Self::Input(error) | Self::NoDevice(error) => write!(f, "error: {error:#}"),
         }

@@ -5,12 +5,16 @@ mod compare;
 mod explain;
 mod failure;
 mod limit;
+mod merge;
 mod pass_table;
 mod probe;
+mod reference;
 mod render;
 mod schema;
 mod stdout;
+mod watch;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -32,7 +36,9 @@ struct Cli {
 enum Command {
     Compare(compare::Arguments),
     Explain(explain::Arguments),
+    Merge(merge::Arguments),
     Probe(probe::Arguments),
+    Reference(reference::Arguments),
     Render(render::Arguments),
     Schema(schema::Arguments),
 }
@@ -44,6 +50,8 @@ pub fn run() -> ExitCode {
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::Reference(arguments) => reference::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
     };
     match outcome {
@@ -52,5 +60,14 @@ pub fn run() -> ExitCode {
             eprintln!("{failure}");
             failure.exit_code()
         }
+    }
+}
+
+/// The name of an EXR file to write.
+fn exr_output(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("exr") => Ok(path),
+        _ => Err(format!("'{text}' does not end in .exr; the standard errors need an EXR file")),
     }
 }

@@ -1,5 +1,7 @@
 //! OpenEXR: linear radiance with its units and its camera.
 
+use std::collections::HashMap;
+use std::io::Cursor;
 use std::path::Path;
 
 use exr::prelude::{
@@ -17,12 +19,48 @@ const TRANSMITTANCE: [&str; 3] = ["transmittance.R", "transmittance.G", "transmi
 const STANDARD_ERROR: [&str; 3] = ["standard_error.R", "standard_error.G", "standard_error.B"];
 const DISTANCE: &str = "distance_m";
 
+/// What an EXR file says about its frame besides the pixels: attributes by name.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ExrHeader {
+    attributes: HashMap<Text, AttributeValue>,
+}
+
+impl ExrHeader {
+    /// Units, bands, scene and camera.
+    pub fn of_scene(scene: &Scene) -> Self {
+        Self { attributes: attributes(scene).into_iter().map(|(name, value)| (Text::from(name), value)).collect() }
+    }
+
+    /// The header with another text.
+    pub fn with_text(mut self, name: &str, text: &str) -> Self {
+        self.attributes.insert(Text::from(name), AttributeValue::Text(Text::from(text)));
+        self
+    }
+
+    /// A text, where there is one with that name.
+    pub fn text(&self, name: &str) -> Option<String> {
+        match self.attributes.get(&Text::from(name)) {
+            Some(AttributeValue::Text(text)) => Some(text.to_string()),
+            _ => None,
+        }
+    }
+}
+
 /// Writes a frame as 32-bit floats: radiance in R, G and B; transmittance.R, .G and .B; distance_m; and, where the frame
-/// has it, standard_error.R, .G and .B. The header says units, bands, scene, camera and program.
+/// has it, standard_error.R, .G and .B. The header says units, bands, scene, camera and program. The same frame of the
+/// same scene gives the same bytes.
 ///
 /// # Errors
 /// [`OutputError::Encode`] or [`OutputError::Write`]; then nothing is left behind.
-pub fn write_exr(mut file: AtomicFile, frame: &Frame, scene: &Scene) -> Result<(), OutputError> {
+pub fn write_exr(file: AtomicFile, frame: &Frame, scene: &Scene) -> Result<(), OutputError> {
+    write_exr_with_header(file, frame, &ExrHeader::of_scene(scene))
+}
+
+/// The same with any header.
+///
+/// # Errors
+/// As [`write_exr`].
+pub fn write_exr_with_header(file: AtomicFile, frame: &Frame, header: &ExrHeader) -> Result<(), OutputError> {
     let mut channels = bands(RADIANCE, &frame.radiance);
     channels.extend(bands(TRANSMITTANCE, &frame.transmittance));
     channels.push(AnyChannel::new(DISTANCE, FlatSamples::F32(frame.distance_m.clone())));
@@ -32,10 +70,32 @@ pub fn write_exr(mut file: AtomicFile, frame: &Frame, scene: &Scene) -> Result<(
     let size = (frame.width as usize, frame.height as usize);
     let channels = AnyChannels::sort(channels.into_iter().collect());
     let mut image = Image::from_layer(Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels));
-    image.attributes.other = header(scene).into_iter().map(|(name, value)| (Text::from(name), value)).collect();
-    let written = image.write().to_unbuffered(file.file());
+    image.attributes.other = header.attributes.clone();
+    let mut bytes = Cursor::new(Vec::new());
+    let written = image.write().to_buffered(&mut bytes);
     written.map_err(|source| OutputError::Encode { path: file.path().to_owned(), source: source.into() })?;
-    file.commit()
+    let mut bytes = bytes.into_inner();
+    sort_attributes(&mut bytes);
+    file.write_all(&bytes)
+}
+
+/// Sorts the attributes of an encoded file by name: the encoder writes them in an order that changes from run to run.
+/// They stay where they are as a whole, so no offset in the file changes.
+fn sort_attributes(bytes: &mut [u8]) {
+    // Magic number and version, then name, type and length of each attribute; an empty name ends them.
+    const START: usize = 8;
+    let end_of_text = |from: usize| from + bytes[from..].iter().position(|&byte| byte == 0).unwrap_or(0) + 1;
+    let mut attributes = Vec::new();
+    let mut at = START;
+    while bytes[at] != 0 {
+        let length_at = end_of_text(end_of_text(at));
+        let length = bytemuck::pod_read_unaligned::<i32>(&bytes[length_at..length_at + 4]).to_le();
+        let end = length_at + 4 + length as usize;
+        attributes.push(bytes[at..end].to_vec());
+        at = end;
+    }
+    attributes.sort();
+    bytes[START..at].copy_from_slice(&attributes.concat());
 }
 
 fn bands(names: [&str; 3], pixels: &[[f32; 3]]) -> Vec<AnyChannel<FlatSamples>> {
@@ -43,7 +103,7 @@ fn bands(names: [&str; 3], pixels: &[[f32; 3]]) -> Vec<AnyChannel<FlatSamples>> 
     names.iter().enumerate().map(|(band, &name)| AnyChannel::new(name, samples(band))).collect()
 }
 
-fn header(scene: &Scene) -> Vec<(&'static str, AttributeValue)> {
+fn attributes(scene: &Scene) -> Vec<(&'static str, AttributeValue)> {
     let text = |text: &str| AttributeValue::Text(Text::from(text));
     let camera = &scene.camera;
     vec![
@@ -64,6 +124,14 @@ fn header(scene: &Scene) -> Vec<(&'static str, AttributeValue)> {
 /// # Errors
 /// [`OutputError::Read`] where there is no image; [`OutputError::MissingChannel`].
 pub fn read_exr(path: &Path) -> Result<Frame, OutputError> {
+    read_exr_with_header(path).map(|(frame, _)| frame)
+}
+
+/// The same with the file's header.
+///
+/// # Errors
+/// As [`read_exr`].
+pub fn read_exr_with_header(path: &Path) -> Result<(Frame, ExrHeader), OutputError> {
     let reader = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes();
     let image = reader.from_file(path).map_err(|source| OutputError::Read { path: path.to_owned(), source })?;
     let layer = image.layer_data;
@@ -83,5 +151,5 @@ pub fn read_exr(path: &Path) -> Result<Frame, OutputError> {
     frame.transmittance = spectral(TRANSMITTANCE).unwrap_or(frame.transmittance);
     frame.distance_m = channel(DISTANCE).unwrap_or(frame.distance_m);
     frame.standard_error = spectral(STANDARD_ERROR).ok();
-    Ok(frame)
+    Ok((frame, ExrHeader { attributes: layer.attributes.other }))
 }

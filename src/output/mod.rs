@@ -8,5 +8,5 @@ mod png_file;
 
 pub use atomic_file::AtomicFile;
 pub use error::OutputError;
-pub use exr_file::{read_exr, write_exr};
+pub use exr_file::{ExrHeader, read_exr, read_exr_with_header, write_exr, write_exr_with_header};
 pub use png_file::write_png;

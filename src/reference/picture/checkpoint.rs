@@ -3,11 +3,11 @@
 //! Layout: the line `welkin checkpoint 1`, a line of JSON (identity, goal, number of pixels), the pixels as they lie
 //! in memory (little endian), and a CRC-32 of everything before it.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::film::{Film, PixelMean, Shard};
 use super::identity::Identity;
+use crate::output::{AtomicFile, OutputError};
 
 const MAGIC: &str = "welkin checkpoint 1\n";
 
@@ -57,20 +57,16 @@ pub fn path_for(output: &Path) -> PathBuf {
 /// Saves a film, whole or not at all.
 ///
 /// # Errors
-/// Those of the file system.
-pub fn save(path: &Path, identity: &Identity, film: &Film) -> std::io::Result<()> {
+/// [`OutputError`], with what was there before untouched.
+pub fn save(path: &Path, identity: &Identity, film: &Film) -> Result<(), OutputError> {
     let header = Header { identity: identity.clone(), goal: film.goal, pixels: film.pixels.len() };
     let mut bytes = MAGIC.as_bytes().to_vec();
-    serde_json::to_writer(&mut bytes, &header)?;
+    serde_json::to_writer(&mut bytes, &header)
+        .map_err(|source| OutputError::Encode { path: path.into(), source: source.into() })?;
     bytes.push(b'\n');
     bytes.extend_from_slice(bytemuck::cast_slice(&film.pixels));
     bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
-    let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(directory)?;
-    file.write_all(&bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path)?;
-    Ok(())
+    AtomicFile::create(path)?.write_all(&bytes)
 }
 
 /// Loads the film of a run.
@@ -116,6 +112,8 @@ mod tests {
             version: "1".into(),
             seed: 7,
             walks_per_batch: 16,
+            most_walks: 256,
+            max_error: Some(0.01),
             width: 5,
             height: 3,
             shard: 2,

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use welkin_lut::Bands;
 
 use super::film::Film;
+use crate::output::OutputError;
 
 /// Batches of the first round, from which the error is first estimated.
 const FIRST_BATCHES: u64 = 8;
@@ -62,7 +63,7 @@ pub trait Observer: Sync {
     ///
     /// # Errors
     /// Whatever goes wrong ends the exposure.
-    fn paused(&self, film: &Film, level: bool) -> std::io::Result<()>;
+    fn paused(&self, film: &Film, level: bool) -> Result<(), OutputError>;
 
     /// Set to end the exposure early.
     fn interrupted(&self) -> &AtomicBool;
@@ -87,7 +88,7 @@ pub fn expose<S: Subject>(
     film: &mut Film,
     stop: &Stop,
     observer: &impl Observer,
-) -> std::io::Result<Outcome> {
+) -> Result<Outcome, OutputError> {
     loop {
         if film.is_level() {
             observer.paused(film, true)?;
@@ -126,7 +127,6 @@ fn round<S: Subject>(subject: &S, film: &mut Film, start: usize, observer: &impl
 
 #[cfg(test)]
 mod tests {
-    use std::io;
     use std::sync::atomic::AtomicU64;
 
     use rand_core::{Rng, SeedableRng};
@@ -171,7 +171,7 @@ mod tests {
             }
         }
 
-        fn paused(&self, _: &Film, _: bool) -> io::Result<()> {
+        fn paused(&self, _: &Film, _: bool) -> Result<(), OutputError> {
             Ok(())
         }
 

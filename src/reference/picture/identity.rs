@@ -3,10 +3,11 @@
 use std::fmt;
 
 use super::film::Shard;
+use super::sampling::Sampling;
 use crate::scene::Scene;
 
 /// Everything that decides about the bits of a picture.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Identity {
     /// Name of the scene, for messages.
     pub scene: String,
@@ -18,6 +19,10 @@ pub struct Identity {
     pub seed: u64,
     /// Walks in a batch.
     pub walks_per_batch: u64,
+    /// Walks asked for, at most, for each pixel.
+    pub most_walks: u64,
+    /// Relative error asked for.
+    pub max_error: Option<f64>,
     /// Width of the picture, pixels.
     pub width: u32,
     /// Height of the picture, pixels.
@@ -49,7 +54,7 @@ impl fmt::Display for Fingerprint {
 
 impl Identity {
     /// Of one part of a scene's picture.
-    pub fn new(scene: &Scene, seed: u64, walks_per_batch: u64, shard: Shard) -> Self {
+    pub fn new(scene: &Scene, seed: u64, sampling: &Sampling, shard: Shard) -> Self {
         // Debug prints every number so that it reads back as the same bits. Name and display do not touch radiance.
         let problem = format!("{:?}", (&scene.planet, &scene.medium, &scene.lights, &scene.camera));
         Self {
@@ -57,7 +62,9 @@ impl Identity {
             fingerprint: Fingerprint::of(&problem),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             seed,
-            walks_per_batch,
+            walks_per_batch: sampling.walks_per_batch,
+            most_walks: sampling.most_walks(),
+            max_error: sampling.stop().relative_error,
             width: scene.camera.width,
             height: scene.camera.height,
             shard: shard.index + 1,
@@ -65,7 +72,19 @@ impl Identity {
         }
     }
 
-    /// The first thing in which another picture differs from this one, whatever the part; `None` for the same picture.
+    /// The first thing in which another part was asked for other than this one; `None` for parts of one picture.
+    pub fn difference_of_parts(&self, other: &Self) -> Option<String> {
+        self.difference(other).or_else(|| {
+            let asked = |identity: &Self| {
+                let error = identity.max_error.map(|error| format!(" or relative error {error}")).unwrap_or_default();
+                format!("{} walks a pixel{error}", identity.most_walks)
+            };
+            (asked(self) != asked(other)).then(|| format!("{}, not {}", asked(other), asked(self)))
+        })
+    }
+
+    /// The first thing in which a checkpoint's picture differs from this one, whatever the part; `None` where walks
+    /// of the one are walks of the other.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let scene = |identity: &Self| format!("scene '{}' ({})", identity.scene, identity.fingerprint);
         let size = |identity: &Self| format!("{}x{} pixels", identity.width, identity.height);

@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 use super::film::Shard;
 use super::identity::Identity;
 use crate::frame::Frame;
-use crate::frame::exr::{self, ExrError};
+use crate::output::{AtomicFile, ExrHeader, OutputError, read_exr_with_header, write_exr_with_header};
+
+/// Name of the attribute that says what a file belongs to.
+const ATTRIBUTE: &str = "welkin_part";
 
 /// One part of a picture (or all of it), and what it belongs to.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +17,8 @@ pub struct Part {
     pub identity: Identity,
     /// The whole picture's size; only the part's pixels mean something.
     pub frame: Frame,
+    /// What the file says besides.
+    pub header: ExrHeader,
 }
 
 /// What the file's attribute says.
@@ -29,7 +34,7 @@ struct Origin {
 pub enum PartError {
     /// The file cannot be read or written.
     #[error(transparent)]
-    File(#[from] ExrError),
+    File(#[from] OutputError),
     /// The file is a picture, but not by `welkin reference`.
     #[error("'{}' was not written by `welkin reference`: {problem}", path.display())]
     NoPart {
@@ -84,11 +89,11 @@ fn list(numbers: &[u32]) -> String {
 ///
 /// # Errors
 /// [`PartError::File`].
-pub fn write_part(path: &Path, part: &Part) -> Result<(), PartError> {
+pub fn write_part(file: AtomicFile, part: &Part) -> Result<(), PartError> {
     let origin = Origin { identity: part.identity.clone(), crc32: checksum(part) };
-    let json =
-        serde_json::to_string(&origin).map_err(|error| ExrError::Write { path: path.into(), source: error.into() })?;
-    Ok(exr::write(path, &part.frame, &json)?)
+    let json = serde_json::to_string(&origin)
+        .map_err(|source| OutputError::Encode { path: file.path().into(), source: source.into() })?;
+    Ok(write_exr_with_header(file, &part.frame, &part.header.clone().with_text(ATTRIBUTE, &json))?)
 }
 
 /// Reads a part.
@@ -97,13 +102,11 @@ pub fn write_part(path: &Path, part: &Part) -> Result<(), PartError> {
 /// [`PartError`]: unreadable, not a part, or damaged.
 pub fn read_part(path: &Path) -> Result<Part, PartError> {
     let no_part = |problem: String| PartError::NoPart { path: path.into(), problem };
-    let (frame, json) = exr::read(path)?;
-    if json.is_empty() {
-        return Err(no_part("it has no attribute 'welkin'".into()));
-    }
+    let (frame, header) = read_exr_with_header(path)?;
+    let json = header.text(ATTRIBUTE).ok_or_else(|| no_part(format!("it has no attribute '{ATTRIBUTE}'")))?;
     let origin: Origin =
-        serde_json::from_str(&json).map_err(|error| no_part(format!("its attribute 'welkin' says {error}")))?;
-    let part = Part { identity: origin.identity, frame };
+        serde_json::from_str(&json).map_err(|error| no_part(format!("its attribute '{ATTRIBUTE}' says {error}")))?;
+    let part = Part { identity: origin.identity, frame, header };
     let Identity { width, height, shard, shards, .. } = part.identity;
     let fits = (width, height) == (part.frame.width, part.frame.height) && (1..=shards).contains(&shard);
     if !fits || checksum(&part) != origin.crc32 {
@@ -137,7 +140,7 @@ pub fn merge(parts: Vec<(PathBuf, Part)>) -> Result<Part, PartError> {
     let mut by_number: Vec<Option<&(PathBuf, Part)>> = vec![None; count as usize];
     for entry in &parts {
         let (path, part) = entry;
-        if let Some(difference) = first.identity.difference(&part.identity) {
+        if let Some(difference) = first.identity.difference_of_parts(&part.identity) {
             return Err(PartError::Foreign { path: path.clone(), first: first_path.clone(), difference });
         }
         let number = part.identity.shard;

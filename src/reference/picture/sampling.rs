@@ -34,6 +34,11 @@ impl Sampling {
         Stop { most_batches: self.most_batches, relative_error: self.relative_error }
     }
 
+    /// Most walks for each pixel.
+    pub fn most_walks(&self) -> u64 {
+        self.most_batches * self.walks_per_batch
+    }
+
     /// How many batches each pixel will have had in the end, as far as can be told.
     pub fn expected_batches(&self, film: &Film) -> u64 {
         let wanted = match self.relative_error {
@@ -52,7 +57,7 @@ mod tests {
     fn every_number_of_walks_gives_at_least_two_batches_and_no_fewer_walks() {
         for walks in 2..2000 {
             let sampling = Sampling::new(Some(walks), None);
-            let given = sampling.most_batches * sampling.walks_per_batch;
+            let given = sampling.most_walks();
             assert!(sampling.most_batches >= 2 && given >= walks && given < walks + WALKS_PER_BATCH, "{walks}");
         }
     }
