@@ -116,9 +116,16 @@ impl Context {
     /// Marks a recording as open: until it is closed, nothing else may be submitted, as the states of resources that
     /// it starts from would no longer be true.
     pub(crate) fn open_recording(&self, label: &str) -> Result<(), GpuError> {
-        self.check_idle("record another list")?;
-        *lock(&self.recording) = Some(label.to_owned());
-        Ok(())
+        let mut recording = lock(&self.recording);
+        match recording.as_ref() {
+            Some(open) => {
+                Err(GpuError::Recording { action: format!("start the recording `{label}`"), open: open.clone() })
+            }
+            None => {
+                *recording = Some(label.to_owned());
+                Ok(())
+            }
+        }
     }
 
     pub(crate) fn close_recording(&self) {

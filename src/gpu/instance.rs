@@ -24,14 +24,17 @@ impl Instance {
     pub(crate) fn new(validation: Validation) -> Result<Self, GpuError> {
         // SAFETY: the loader of the system is a Vulkan loader.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| GpuError::NoLoader(error.to_string()))?;
-        let validate = validation == Validation::On;
-        if validate && !has_layer(&entry)? {
-            return Err(GpuError::NoValidationLayer);
-        }
+        let layer_version = match validation {
+            Validation::Off => None,
+            Validation::On => Some(layer_version(&entry)?.ok_or(GpuError::NoValidationLayer)?),
+        };
+        let validate = layer_version.is_some();
         let debug_utils = has_extension(&entry, None, ext::debug_utils::NAME)?;
         let features = validate && has_extension(&entry, Some(LAYER), ext::validation_features::NAME)?;
+        let settings = layer_version.is_some_and(|version| version >= SHADER_ACCESSES_VERSION)
+            && has_extension(&entry, Some(LAYER), ext::layer_settings::NAME)?;
         let log = ValidationLog::default();
-        let raw = create(&entry, validate, debug_utils, features, &log)?;
+        let raw = create(&entry, Extras { validate, debug_utils, features, settings }, &log)?;
         let mut instance = Self { raw, messenger: None, debug_utils, log, _entry: entry };
         if validate && debug_utils {
             let functions = ext::debug_utils::Instance::new(&instance._entry, &instance.raw);
@@ -56,20 +59,39 @@ impl Drop for Instance {
     }
 }
 
-fn create(
-    entry: &ash::Entry,
+/// From this version on, the layer leaves the accesses of shaders out of its synchronisation checks unless asked.
+const SHADER_ACCESSES_VERSION: u32 = vk::make_api_version(0, 1, 4, 304);
+
+/// What is turned on besides Vulkan itself.
+struct Extras {
     validate: bool,
     debug_utils: bool,
+    /// The layer's synchronisation checks.
     features: bool,
-    log: &ValidationLog,
-) -> Result<ash::Instance, GpuError> {
+    /// The layer's settings.
+    settings: bool,
+}
+
+fn create(entry: &ash::Entry, extras: Extras, log: &ValidationLog) -> Result<ash::Instance, GpuError> {
+    let Extras { validate, debug_utils, features, settings } = extras;
     let application = vk::ApplicationInfo::default().application_name(c"welkin").api_version(vk::API_VERSION_1_3);
     let layers: &[*const c_char] = if validate { &[LAYER.as_ptr()] } else { &[] };
     let mut extensions = Vec::new();
     extensions.extend(debug_utils.then_some(ext::debug_utils::NAME.as_ptr()));
     extensions.extend(features.then_some(ext::validation_features::NAME.as_ptr()));
+    extensions.extend(settings.then_some(ext::layer_settings::NAME.as_ptr()));
     let synchronisation = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
     let mut checks = vk::ValidationFeaturesEXT::default().enabled_validation_features(&synchronisation);
+    let yes = vk::TRUE.to_ne_bytes();
+    let mut shader_accesses = vk::LayerSettingEXT::default()
+        .layer_name(LAYER)
+        .setting_name(c"syncval_shader_accesses_heuristic")
+        .ty(vk::LayerSettingTypeEXT::BOOL32)
+        .values(&yes);
+    // ash counts bytes here; Vulkan counts values.
+    shader_accesses.value_count = 1;
+    let shader_accesses = [shader_accesses];
+    let mut layer_settings = vk::LayerSettingsCreateInfoEXT::default().settings(&shader_accesses);
     // A messenger in the chain hears of the instance's own creation and destruction.
     let mut messenger = log.messenger();
     let mut info = vk::InstanceCreateInfo::default()
@@ -78,6 +100,9 @@ fn create(
         .enabled_extension_names(&extensions);
     if features {
         info = info.push_next(&mut checks);
+    }
+    if settings {
+        info = info.push_next(&mut layer_settings);
     }
     if validate && debug_utils {
         info = info.push_next(&mut messenger);
@@ -89,10 +114,12 @@ fn create(
     })
 }
 
-fn has_layer(entry: &ash::Entry) -> Result<bool, GpuError> {
+/// The Vulkan version that the validation layer was made for, if it is installed.
+fn layer_version(entry: &ash::Entry) -> Result<Option<u32>, GpuError> {
     // SAFETY: the entry is loaded.
     let layers = unsafe { entry.enumerate_instance_layer_properties() }.during("vkEnumerateInstanceLayerProperties")?;
-    Ok(layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(LAYER)))
+    let layer = layers.iter().find(|layer| layer.layer_name_as_c_str() == Ok(LAYER));
+    Ok(layer.map(|layer| layer.spec_version))
 }
 
 fn has_extension(entry: &ash::Entry, layer: Option<&CStr>, name: &CStr) -> Result<bool, GpuError> {

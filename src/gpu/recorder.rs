@@ -40,7 +40,7 @@ pub struct Completed {
 /// A list of dispatches under construction. Dropped without submitting, it does nothing.
 pub struct Commands {
     context: Arc<Context>,
-    list: CommandList,
+    pub(crate) list: CommandList,
     images: HashMap<vk::Image, (GpuImage, State)>,
     buffers: HashMap<vk::Buffer, (GpuBuffer, State)>,
     kept: Kept,

@@ -100,8 +100,7 @@ mod tests {
     use ash::vk;
 
     use super::*;
-    use crate::gpu::command_list::CommandList;
-    use crate::gpu::{DeviceRequest, Gpu};
+    use crate::gpu::{DeviceRequest, Gpu, Resource, Work};
 
     /// What the layer says of calls that bypass the engine's own checks, until the device is closed.
     fn messages_of(wrong: impl FnOnce(&Gpu)) -> Vec<ValidationMessage> {
@@ -142,17 +141,32 @@ mod tests {
         assert!(messages.iter().any(|message| message.rule.contains("vkDestroyDevice")), "{messages:?}");
     }
 
+    // The layer of Debian 12 (1.3.239) takes a dispatch's writes for reads, so that it cannot see two dispatches that
+    // write one resource; `barrier.rs` holds those apart. It does see a dispatch that does not wait for a copy.
     #[test]
-    fn a_write_after_a_write_without_a_barrier_is_a_hazard() {
-        let messages = messages_of(|gpu| {
-            let buffer = gpu.storage_buffer("target", 64).unwrap();
-            let mut list = CommandList::new(&gpu.0).unwrap();
-            for value in 0..2 {
-                // SAFETY: the buffer can be copied to and lives until the list is done; the hazard is what is tested.
-                unsafe { gpu.0.device.cmd_fill_buffer(list.raw, buffer.0.raw, 0, 64, value) };
-            }
-            list.submit_and_wait().unwrap();
-        });
-        assert!(messages.iter().any(|message| message.rule.contains("SYNC-HAZARD-WRITE")), "{messages:?}");
+    fn a_dispatch_that_does_not_wait_for_a_copy_is_a_hazard() {
+        const WRITE: &str = "@group(0) @binding(0) var<storage, read_write> values: array<u32, 64>;
+            @compute @workgroup_size(64) fn main(@builtin(local_invocation_index) i: u32) { values[i] += 1u; }";
+        let sources = welkin_shaders::Sources::default().with("add.wgsl", WRITE);
+        let shader = welkin_shaders::Shader::from_sources(&sources, "add", &Default::default()).unwrap();
+        let messages_with = |unordered_copy: bool| {
+            messages_of(|gpu| {
+                let pipeline = gpu.pipeline(&shader).unwrap();
+                let buffer = gpu.storage_buffer("target", 256).unwrap();
+                let mut commands = gpu.record("hazard").unwrap();
+                if unordered_copy {
+                    // SAFETY: the buffer lives until the list is done; the hazard is what is tested.
+                    unsafe { gpu.0.device.cmd_fill_buffer(commands.list.raw, buffer.0.raw, 0, 256, 1) };
+                }
+                for _ in 0..2 {
+                    let resources = [("values", Resource::Buffer(&buffer))];
+                    commands.dispatch(&pipeline, &resources, Work::Workgroups([1, 1, 1])).unwrap();
+                }
+                commands.submit_and_wait().unwrap();
+            })
+        };
+        assert_eq!(messages_with(false), []);
+        let messages = messages_with(true);
+        assert!(messages.iter().any(|message| message.rule.starts_with("SYNC-HAZARD")), "{messages:?}");
     }
 }
