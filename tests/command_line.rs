@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 use welkin::frame::Frame;
-use welkin::output::{AtomicFile, write_exr};
+use welkin::output::{AtomicFile, display, read_exr, write_exr};
 use welkin::scene::Scene;
 
 const SCENE: &str = "preset = \"hillaire2020\"\n[sun]\nelevation_deg = 30\nazimuth_deg = 0\nirradiance = 1\nangular_radius_deg = 0\n\
@@ -204,4 +204,66 @@ fn the_schema_command_prints_the_schema() {
     assert_eq!(code(&output), 0);
     let printed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(printed, welkin::scene::schema());
+}
+
+#[test]
+fn explain_says_what_becomes_of_every_pass_without_a_device() {
+    let vacuum = format!(
+        "{SCENE}[medium.rayleigh]\ndensity_factor = 0\n[medium.mie]\ndensity_factor = 0\n[medium.ozone]\ndensity_factor = 0\n"
+    );
+    let folder = folder_with(&[("scene.toml", SCENE), ("vacuum.toml", &vacuum)]);
+    let decisions = |scene: &str| -> Vec<(String, String)> {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_welkin"));
+        let output = command.current_dir(folder.path()).args(["explain", scene, "--json"]);
+        let output = output.env("VK_DRIVER_FILES", "/none").env("VK_ICD_FILENAMES", "/none").output().unwrap();
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let text = |pass: &serde_json::Value, key: &str| pass[key].as_str().unwrap().to_owned();
+        let passes = json["passes"].as_array().unwrap();
+        assert!(passes.iter().all(|pass| !text(pass, "reason").is_empty() && pass["bytes"].is_u64()));
+        passes.iter().map(|pass| (text(pass, "name"), text(pass, "decision"))).collect()
+    };
+    let decision = |scene: &str, name: &str| decisions(scene).into_iter().find(|pass| pass.0 == name).unwrap().1;
+    assert_eq!(decision("scene.toml", "sky_view"), "run");
+    assert_eq!(decision("vacuum.toml", "sky_view"), "skip");
+    assert_eq!(decision("vacuum.toml", "display"), "run");
+}
+
+#[test]
+fn a_place_that_cannot_be_written_costs_no_rendering() {
+    for (out, said) in
+        [("out.jpg", ".exr or .png"), ("no/out.png", "no folder 'no'"), ("ok.png -o no/a.exr", "no folder")]
+    {
+        refused(SCENE, RAYS, &format!("render scene.toml -o {out}"), &[said]);
+    }
+    refused(SCENE, RAYS, "render scene.toml -o out.png --json no/out.json", &["no folder 'no'"]);
+    refused(SCENE, RAYS, "render scene.toml -o out.png --quality best", &["best", "low, medium, high, ultra"]);
+}
+
+/// Renders the scene to a PNG and an EXR file and says by how many of 255 steps the two differ at most, once the EXR
+/// file's radiance is multiplied by a factor.
+fn steps_between_png_and_exr(scene: &str, factor: f64) -> u8 {
+    let folder = folder_with(&[("scene.toml", scene)]);
+    let output = welkin(folder.path(), "render scene.toml -o a.png -o a.exr --json a.json");
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let scene = Scene::read(&folder.path().join("scene.toml")).unwrap();
+    let frame = read_exr(&folder.path().join("a.exr")).unwrap();
+    assert!(frame.radiance.as_flattened().iter().any(|&value| value > 0.0), "the picture is black");
+    let exposure = display::exposure(&scene).map(|band| band * factor);
+    let host = display::picture(&frame, exposure, scene.display.tone_map);
+    let device = image::open(folder.path().join("a.png")).unwrap().into_rgb8().into_raw();
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(folder.path().join("a.json")).unwrap()).unwrap();
+    let ran = |pass: &&serde_json::Value| pass["decision"] == "run";
+    assert!(json["passes"].as_array().unwrap().iter().filter(ran).all(|pass| pass["milliseconds"].is_f64()), "{json}");
+    host.iter().zip(&device).map(|(host, device)| host.abs_diff(*device)).max().unwrap()
+}
+
+#[test]
+fn a_rendered_png_shows_the_radiance_of_the_exr() {
+    for tone_map in ["filmic", "none"] {
+        let scene = format!("{SCENE}[display]\nexposure_ev = 3\ntone_map = \"{tone_map}\"\n");
+        // The device adds noise of less than one step and both round: less than two.
+        assert!(steps_between_png_and_exr(&scene, 1.0) <= 2, "{tone_map}");
+        assert!(steps_between_png_and_exr(&scene, 1.1) > 2, "{tone_map}: a tenth more light was not seen");
+    }
 }

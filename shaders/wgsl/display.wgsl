@@ -28,7 +28,7 @@ fn tone_map(exposed: vec3<f32>) -> vec3<f32> {
     }
     let powered = pow(min(strongest, WHITEST), CONTRAST);
     let t = powered / (powered + MIDDLE_GREY);
-    return t * mix(exposed / strongest, vec3<f32>(1.0), t * t * t);
+    return t * mix(exposed / strongest, vec3<f32>(1.0), t * t * t * t);
 #else
     return min(exposed, vec3<f32>(1.0));
 #endif

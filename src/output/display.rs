@@ -31,7 +31,7 @@ const WHITEST: f64 = 1e9;
 ///
 /// The filmic curve takes the strongest band m to t = m^c / (m^c + k), a sigmoid in log m as film and the eye have it
 /// (Naka & Rushton 1966), with c = 1.3 and k such that 0.18 stays 0.18. The other bands keep their ratio to m, so that
-/// hue does not turn as it does where each band has its own curve, and all move towards white by the share t³: strong
+/// hue does not turn as it does where each band has its own curve, and all move towards white by the share t⁴: strong
 /// light is white, and a blue sky stays blue.
 pub fn tone_map(tone_map: ToneMap, exposed: Bands) -> Bands {
     let exposed = exposed.map(|band| band.max(0.0));
@@ -42,7 +42,7 @@ pub fn tone_map(tone_map: ToneMap, exposed: Bands) -> Bands {
         ToneMap::Filmic => {
             let powered = strongest.min(WHITEST).powf(CONTRAST);
             let t = powered / (powered + MIDDLE_GREY);
-            let white = t * t * t;
+            let white = t.powi(4);
             exposed.map(|band| t * (band / strongest * (1.0 - white) + white))
         }
     }
