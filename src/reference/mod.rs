@@ -22,6 +22,7 @@ mod random;
 mod segment;
 mod shape;
 pub mod single;
+pub mod slab;
 mod spectrum;
 mod spread;
 mod tally;

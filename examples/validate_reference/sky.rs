@@ -1,19 +1,13 @@
-//! Holds the reference against every row of the tables in `tests/reference`, far beyond what the tests have time for.
-//!
-//! `cargo run --release --example validate_reference -- sky|views [--every N] [--error E]`
-//!
-//! Prints z-scores by the sun's zenith angle and the worst rows. Exit code 1 when a z-score says that the codes differ.
-
-#[path = "../tests/reference/tables.rs"]
-mod tables;
+//! Rays through the clear sky.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use tables::Row;
 use welkin::probe::{Orders, Ray, RayRadiance};
 use welkin::reference::Effort;
 use welkin::reference::probe::probe_world;
+
+use crate::tables::{self, Row};
 
 /// A view of a table: what was asked, and the rows (one for each band) that answer it.
 struct Question {
@@ -30,38 +24,26 @@ struct Score {
     line: String,
 }
 
-fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let table = arguments.first().map_or("", String::as_str);
-    let option = |name: &str, default: f64| {
-        let at = arguments.iter().position(|a| a == name);
-        at.and_then(|i| arguments.get(i + 1)).map_or(default, |v| v.parse().expect("a number"))
-    };
-    let every = option("--every", 1.0) as usize;
-    let effort = Effort::RelativeError(option("--error", 0.004));
-    let only = option("--sun", -1.0);
-    let columns = match table {
-        "sky" => Columns { file: "earth_sky.csv", single: "single_quad", total: "total_best", error: "ms_mc_stderr" },
-        "views" => Columns { file: "earth_views.csv", single: "single", total: "total", error: "total_stderr" },
-        _ => {
-            eprintln!("usage: validate_reference sky|views [--every N] [--error E] [--sun DEGREES]");
-            std::process::exit(2);
-        }
-    };
-    let questions: Vec<Question> = questions(&columns)
-        .into_iter()
-        .filter(|q| only < 0.0 || (q.ray.sun_zenith_rad.to_degrees() - only).abs() < 1e-6)
-        .step_by(every)
-        .collect();
-    let bad = validate(&columns, &questions, effort);
-    std::process::exit(i32::from(bad));
+/// What the columns of a table are called.
+pub struct Columns {
+    /// File beside the tests.
+    pub file: &'static str,
+    /// Light scattered once.
+    pub single: &'static str,
+    /// All light.
+    pub total: &'static str,
+    /// One standard error of that.
+    pub error: &'static str,
 }
 
-struct Columns {
-    file: &'static str,
-    single: &'static str,
-    total: &'static str,
-    error: &'static str,
+/// Every `every`-th view (of the sun at one zenith angle, if given); true when the codes differ.
+pub fn run(columns: &Columns, every: usize, only_sun_deg: Option<f64>, effort: Effort) -> bool {
+    let questions: Vec<Question> = questions(columns)
+        .into_iter()
+        .filter(|q| only_sun_deg.is_none_or(|sun| (q.ray.sun_zenith_rad.to_degrees() - sun).abs() < 1e-6))
+        .step_by(every)
+        .collect();
+    validate(columns, &questions, effort)
 }
 
 fn questions(columns: &Columns) -> Vec<Question> {
