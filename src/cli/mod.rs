@@ -7,10 +7,12 @@ mod failure;
 mod limit;
 mod merge;
 mod pass_table;
+mod phase_argument;
 mod probe;
 mod reference;
 mod render;
 mod schema;
+mod slab;
 mod stdout;
 mod watch;
 
@@ -41,6 +43,7 @@ enum Command {
     Reference(reference::Arguments),
     Render(render::Arguments),
     Schema(schema::Arguments),
+    Slab(slab::Arguments),
 }
 
 /// Runs the program on the process's arguments.
@@ -53,6 +56,7 @@ pub fn run() -> ExitCode {
         Command::Reference(arguments) => reference::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
+        Command::Slab(arguments) => slab::run(&arguments),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
