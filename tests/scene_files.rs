@@ -254,6 +254,39 @@ fn the_schema_in_the_repository_is_current() {
     assert_eq!(copy, welkin::scene::schema(), "write it anew: welkin schema > schemas/scene.schema.json");
 }
 
+/// The names of all fields and choices that a schema knows.
+fn names(schema: &serde_json::Value, found: &mut Vec<String>) {
+    if let Some(properties) = schema.get("properties").and_then(serde_json::Value::as_object) {
+        found.extend(properties.keys().cloned());
+    }
+    found.extend(schema.get("const").and_then(|name| name.as_str()).map(str::to_owned));
+    match schema {
+        serde_json::Value::Object(object) => object.values().for_each(|value| names(value, found)),
+        serde_json::Value::Array(array) => array.iter().for_each(|value| names(value, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn the_page_on_scene_files_names_every_field() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scene-format.md")).unwrap();
+    let mut fields = Vec::new();
+    names(&welkin::scene::schema(), &mut fields);
+    assert!(fields.len() > 40, "found only {fields:?}");
+    let words: Vec<&str> = page.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
+    let missing: Vec<_> = fields.iter().filter(|field| !words.contains(&field.as_str())).collect();
+    assert!(missing.is_empty(), "docs/scene-format.md does not name {missing:?}");
+}
+
+#[test]
+fn every_example_on_the_page_on_scene_files_is_a_scene() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scene-format.md")).unwrap();
+    let examples: Vec<&str> = page.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    let [smallest, medium] = examples[..] else { panic!("there are {} examples", examples.len()) };
+    parse(smallest).unwrap();
+    parse(&format!("{smallest}{medium}")).unwrap();
+}
+
 #[test]
 fn the_reference_scenes_are_the_problem_of_the_reference_tables() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/reference");
