@@ -1,13 +1,14 @@
 #define_import_path welkin::directions
-// The directions in which a radiance field is sampled at a table's texel, one invocation each, and its projection.
+// The directions in which a radiance field is sampled at a table's texel, and the field's projection.
 //
 // Zenith angles are cut at the horizon, where radiance has a kink, and at the horizontal: Gauss-Legendre below the
 // horizon, in the band between both, and above. Azimuths are midpoints on half a turn: the field is symmetric.
 //
-// Definitions: BELOW_COUNT, BAND_COUNT, ABOVE_COUNT (cosines in each part), AZIMUTH_COUNT.
+// Definitions: BELOW_COUNT, BAND_COUNT, ABOVE_COUNT (cosines in each part), AZIMUTH_COUNT; INVOCATION_COUNT, the
+// workgroup's: invocation i takes the directions i, i + INVOCATION_COUNT, ..
 
 #import welkin::march::GaussNode
-#import welkin::spherical_harmonics::{COEFFICIENT_COUNT, harmonics}
+#import welkin::spherical_harmonics::{associated_legendre, degree_of}
 
 const PI: f32 = 3.14159265358979;
 const BELOW_COUNT: u32 = #{BELOW_COUNT}u;
@@ -16,6 +17,7 @@ const ABOVE_COUNT: u32 = #{ABOVE_COUNT}u;
 const AZIMUTH_COUNT: u32 = #{AZIMUTH_COUNT}u;
 const COSINE_COUNT: u32 = BELOW_COUNT + BAND_COUNT + ABOVE_COUNT;
 const DIRECTION_COUNT: u32 = COSINE_COUNT * AZIMUTH_COUNT;
+const INVOCATION_COUNT: u32 = #{INVOCATION_COUNT}u;
 
 // Gauss-Legendre nodes on [0, 1] for the three parts, one after the other.
 @group(0) @binding(2) var<uniform> cosine_nodes: array<GaussNode, COSINE_COUNT>;
@@ -26,6 +28,10 @@ struct Direction {
     // What the direction stands for, both of its mirror images counted, sr.
     solid_angle_sr: f32,
     hits_ground: bool,
+}
+
+fn azimuth_rad(index: u32) -> f32 {
+    return (f32(index) + 0.5) * PI / f32(AZIMUTH_COUNT);
 }
 
 fn direction_of(index: u32, horizon_mu: f32) -> Direction {
@@ -44,22 +50,26 @@ fn direction_of(index: u32, horizon_mu: f32) -> Direction {
         direction.mu = x * x;
         d_mu *= 2.0 * x;
     }
-    let phi_rad = (f32(index % AZIMUTH_COUNT) + 0.5) * PI / f32(AZIMUTH_COUNT);
-    direction.cos_phi = cos(phi_rad);
+    direction.cos_phi = cos(azimuth_rad(index % AZIMUTH_COUNT));
     direction.solid_angle_sr = d_mu * 2.0 * PI / f32(AZIMUTH_COUNT);
     return direction;
 }
 
-// Radiance seen along each direction, filled by one invocation each before a barrier.
+// Radiance seen along each direction, filled by all invocations before a barrier.
 var<workgroup> field: array<vec3<f32>, DIRECTION_COUNT>;
 
-// I_lm of the field for one coefficient.
+// I_lm of the field for one coefficient: first the sum over azimuths, then over cosines.
 fn project(coefficient: u32, horizon_mu: f32) -> vec3<f32> {
+    let l = degree_of(coefficient);
+    let m = coefficient - l * (l + 1u) / 2u;
     var sum = vec3<f32>(0.0);
-    for (var i = 0u; i < DIRECTION_COUNT; i++) {
-        let direction = direction_of(i, horizon_mu);
-        var y = harmonics(direction.mu, direction.cos_phi);
-        sum += direction.solid_angle_sr * y[coefficient] * field[i];
+    for (var j = 0u; j < COSINE_COUNT; j++) {
+        let first = direction_of(j * AZIMUTH_COUNT, horizon_mu);
+        var ring = vec3<f32>(0.0);
+        for (var k = 0u; k < AZIMUTH_COUNT; k++) {
+            ring += cos(f32(m) * azimuth_rad(k)) * field[j * AZIMUTH_COUNT + k];
+        }
+        sum += first.solid_angle_sr * associated_legendre(l, m, first.mu) * ring;
     }
     return sum;
 }

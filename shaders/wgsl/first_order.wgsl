@@ -3,7 +3,7 @@
 // One workgroup per texel, one invocation per direction; for unit irradiance of the light.
 
 #import welkin::atmosphere::{atmosphere, densities, phase_per_sr, PI, SCATTERER_COUNT}
-#import welkin::directions::{direction_of, field, irradiance, project, DIRECTION_COUNT}
+#import welkin::directions::{direction_of, field, irradiance, project, DIRECTION_COUNT, INVOCATION_COUNT}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
 #import welkin::march::{
@@ -47,24 +47,27 @@ fn single_scattering(ray: AirRay, hits_ground: bool) -> vec3<f32> {
     return radiance;
 }
 
-@compute @workgroup_size(#{DIRECTION_COUNT})
-fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) index: u32) {
+@compute @workgroup_size(#{INVOCATION_COUNT})
+fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
     let size = vec2<f32>(textureDimensions(first_order));
     let here = mapping::multiple_scattering_from_unit(mapping::unit_from_texel(texel.xy, size), atmosphere.top_m);
-    let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
-    let direction = direction_of(index, mu_h);
     let mu_s = here.mu;
-    let sines = sqrt(max((1.0 - direction.mu * direction.mu) * (1.0 - mu_s * mu_s), 0.0));
-    let nu = clamp(direction.mu * mu_s + sines * direction.cos_phi, -1.0, 1.0);
-    let ray = cut_at_shadow(air_ray(here.altitude_m, direction.mu, mu_s, nu, direction.hits_ground));
-    field[index] = single_scattering(ray, direction.hits_ground);
+    let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
+    for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
+        let direction = direction_of(i, mu_h);
+        let sines = sqrt(max((1.0 - direction.mu * direction.mu) * (1.0 - mu_s * mu_s), 0.0));
+        let nu = clamp(direction.mu * mu_s + sines * direction.cos_phi, -1.0, 1.0);
+        let ray = cut_at_shadow(air_ray(here.altitude_m, direction.mu, mu_s, nu, direction.hits_ground));
+        field[i] = single_scattering(ray, direction.hits_ground);
+    }
     workgroupBarrier();
-    if index == 0u {
+    for (var k = invocation; k < COEFFICIENT_COUNT; k += INVOCATION_COUNT) {
         let mean = max(project(0u, mu_h), vec3<f32>(DARK));
-        textureStore(first_order, texel.xy, 0, vec4<f32>(log(mean), 0.0));
-        textureStore(first_order, texel.xy, IRRADIANCE_LAYER, vec4<f32>(log(max(irradiance(mu_h), vec3<f32>(DARK))), 0.0));
-    } else if index < COEFFICIENT_COUNT {
-        let mean = max(project(0u, mu_h), vec3<f32>(DARK));
-        textureStore(first_order, texel.xy, index, vec4<f32>(project(index, mu_h) / mean, 0.0));
+        let value = select(project(k, mu_h) / mean, log(mean), k == 0u);
+        textureStore(first_order, texel.xy, k, vec4<f32>(value, 0.0));
+    }
+    if invocation == 0u {
+        let downward = max(irradiance(mu_h), vec3<f32>(DARK));
+        textureStore(first_order, texel.xy, IRRADIANCE_LAYER, vec4<f32>(log(downward), 0.0));
     }
 }

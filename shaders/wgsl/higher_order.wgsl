@@ -4,7 +4,7 @@
 // from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric.
 
 #import welkin::atmosphere::{atmosphere, densities, PI}
-#import welkin::directions::{direction_of, field, irradiance, project, DIRECTION_COUNT}
+#import welkin::directions::{direction_of, field, irradiance, project, DIRECTION_COUNT, INVOCATION_COUNT}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
 #import welkin::march::{
@@ -68,31 +68,34 @@ fn add_logarithmic(texel: vec2<u32>, layer: u32, value: vec3<f32>) {
     textureStore(sum, texel, layer, vec4<f32>(log(total), 0.0));
 }
 
-@compute @workgroup_size(#{DIRECTION_COUNT})
-fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) index: u32) {
+@compute @workgroup_size(#{INVOCATION_COUNT})
+fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
     let size = vec2<f32>(textureDimensions(sum));
     let here = mapping::multiple_scattering_from_unit(mapping::unit_from_texel(texel.xy, size), atmosphere.top_m);
-    let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
-    let direction = direction_of(index, mu_h);
     let mu_s = here.mu;
-    let sines = sqrt(max((1.0 - direction.mu * direction.mu) * (1.0 - mu_s * mu_s), 0.0));
-    let nu = clamp(direction.mu * mu_s + sines * direction.cos_phi, -1.0, 1.0);
-    let ray = air_ray(here.altitude_m, direction.mu, mu_s, nu, direction.hits_ground);
-    field[index] = scattered_once_more(ray, direction.hits_ground);
+    let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
+    for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
+        let direction = direction_of(i, mu_h);
+        let sines = sqrt(max((1.0 - direction.mu * direction.mu) * (1.0 - mu_s * mu_s), 0.0));
+        let nu = clamp(direction.mu * mu_s + sines * direction.cos_phi, -1.0, 1.0);
+        let ray = air_ray(here.altitude_m, direction.mu, mu_s, nu, direction.hits_ground);
+        field[i] = scattered_once_more(ray, direction.hits_ground);
+    }
     workgroupBarrier();
-    if index == 0u {
+    if invocation == 0u {
         add_logarithmic(texel.xy, 0u, max(project(0u, mu_h), vec3<f32>(DARK)));
         add_logarithmic(texel.xy, IRRADIANCE_LAYER, max(irradiance(mu_h), vec3<f32>(DARK)));
-    } else if index < COEFFICIENT_COUNT {
-        let mean = max(project(0u, mu_h), vec3<f32>(DARK));
-        let mean_before = exp(textureLoad(previous_order, texel.xy, 0, 0).rgb);
-        let mean_sum_before = exp(textureLoad(previous_sum, texel.xy, 0, 0).rgb);
-        let rest = remainder(mean, mean_before);
-        let coefficient = project(index, mu_h);
-        let total = mean_sum_before * textureLoad(previous_sum, texel.xy, index, 0).rgb + coefficient * rest;
+    }
+    let mean = max(project(0u, mu_h), vec3<f32>(DARK));
+    let mean_before = exp(textureLoad(previous_order, texel.xy, 0, 0).rgb);
+    let mean_sum_before = exp(textureLoad(previous_sum, texel.xy, 0, 0).rgb);
+    let rest = remainder(mean, mean_before);
+    for (var k = invocation + 1u; k < COEFFICIENT_COUNT; k += INVOCATION_COUNT) {
+        let coefficient = project(k, mu_h);
+        let total = mean_sum_before * textureLoad(previous_sum, texel.xy, k, 0).rgb + coefficient * rest;
 #ifndef CLOSE_SERIES
-        textureStore(order, texel.xy, index, vec4<f32>(coefficient / mean, 0.0));
+        textureStore(order, texel.xy, k, vec4<f32>(coefficient / mean, 0.0));
 #endif
-        textureStore(sum, texel.xy, index, vec4<f32>(total / (mean_sum_before + mean * rest), 0.0));
+        textureStore(sum, texel.xy, k, vec4<f32>(total / (mean_sum_before + mean * rest), 0.0));
     }
 }

@@ -6,6 +6,9 @@ use super::blocks::lobe_count;
 use crate::plan::Facts;
 use crate::probe::Orders;
 
+/// Invocations of a workgroup that every Vulkan device takes.
+const MAX_INVOCATIONS: u32 = 128;
+
 /// The definitions that every pass of a frame is compiled with.
 pub fn definitions(facts: &Facts) -> Definitions {
     let (settings, groups, directions) = (&facts.settings, &facts.groups, &facts.settings.directions);
@@ -25,7 +28,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("BAND_COUNT", directions.band),
         ("ABOVE_COUNT", directions.above),
         ("AZIMUTH_COUNT", directions.azimuths),
-        ("DIRECTION_COUNT", directions.count()),
+        ("INVOCATION_COUNT", directions.count().min(MAX_INVOCATIONS)),
     ];
     let flags = [
         ("AIR", facts.has_air()),
