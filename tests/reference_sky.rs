@@ -6,7 +6,9 @@ mod tables;
 use tables::Row;
 use welkin::probe::{Orders, Ray, RayRadiance};
 use welkin::reference::Effort;
-use welkin::reference::probe::probe_world;
+use welkin::reference::probe::{direction, probe_world};
+use welkin::reference::single::first_order;
+use welkin::reference::transport::optical_depth;
 
 fn ray(row: &Row, altitude_m: f64) -> Ray {
     Ray {
@@ -93,6 +95,46 @@ fn single_scattering_matches_the_tables_quadrature() {
     let world = tables::earth(row.text("variant"), row.number("ground_albedo"));
     let own = probe_world(&world, &[moved], Orders::Single, Effort::Walks(0), 7)[0];
     assert!((own.radiance[row.band()] / row.number("single_quad") - 1.0).abs() > 1e-5);
+}
+
+#[test]
+fn the_ground_at_ones_feet_is_seen_in_twilight() {
+    // From altitude 0 the ray has no length: it starts on the ground that it hits.
+    let world = tables::earth("B", 0.3);
+    let down = |altitude_m| {
+        let sun_zenith_rad = 95_f64.to_radians();
+        let ray = Ray { altitude_m, view_zenith_rad: 3.0, view_azimuth_rad: 0.0, sun_zenith_rad, sun_azimuth_rad: 0.0 };
+        probe_world(&world, &[ray], Orders::All, Effort::RelativeError(0.02), 7)[0]
+    };
+    let (at_feet, above) = (down(0.0), down(0.01));
+    assert_eq!(at_feet.transmittance, [1.0; 3]);
+    for band in 0..3 {
+        let error = at_feet.standard_error[band].hypot(above.standard_error[band]);
+        assert!(at_feet.radiance[band] > 0.0);
+        assert!((at_feet.radiance[band] - above.radiance[band]).abs() < 4.0 * error, "{at_feet:?} {above:?}");
+    }
+}
+
+#[test]
+fn optical_depth_matches_the_table_and_keeps_its_error_bound() {
+    for row in tables::read("transmittance.csv") {
+        let world = tables::earth(row.text("variant"), 0.0);
+        let position = glam::DVec3::new(0.0, 0.0, row.number("observer_alt_m"));
+        let toward = direction(row.number("view_zenith_deg").to_radians(), 0.0);
+        let depth = optical_depth(&world, position, toward, f64::INFINITY, 1e-10);
+        let (own, bound, table) = (depth.value[row.band()], depth.error[row.band()], row.number("optical_depth"));
+        // The table's angles have 12 digits, which near the horizon moves a ray by up to 1e-9 of its depth.
+        let label = format!("{} m at {}°: {own} ± {bound}, table {table}", position.z, row.text("view_zenith_deg"));
+        assert!((own - table).abs() <= bound + 2e-8 * table, "{label}");
+        assert!(bound <= 1e-10 * own, "{label}");
+        // The rules that the walks use, without adaptation, keep their own promise.
+        let fast = first_order(&world, position, toward, 0.1).transmittance[row.band()];
+        assert!((fast - (-own).exp()).abs() <= 2e-7, "{label}: transmittance {fast}");
+    }
+    // Control: a metre of altitude is seen.
+    let (world, down) = (tables::earth("B", 0.0), direction(2.0, 0.0));
+    let depth = |h| optical_depth(&world, glam::DVec3::new(0.0, 0.0, h), down, f64::INFINITY, 1e-10).value[0];
+    assert!((depth(500.0) / depth(501.0) - 1.0).abs() > 1e-4);
 }
 
 #[test]

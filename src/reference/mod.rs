@@ -2,17 +2,20 @@
 //!
 //! It shares the problem with the renderer (scene, medium, phase functions) and nothing of its solution. Three
 //! solvers answer the same questions: [`single`] (a, quadrature of single scattering with an error bound),
-//! `marching` (b, recursive Monte Carlo ray marching) and [`path`] (c, an unbiased path tracer).
+//! [`marching`] (b, recursive Monte Carlo ray marching) and [`path`] (c, an unbiased path tracer).
 //!
 //! Walks run against the light, from the camera. Equations are those of Premože 2003, sections 4.1 and 4.2.
 
 mod air;
+pub mod attenuation;
 mod column;
 mod field;
 mod first_event;
+mod grid;
 mod guide;
 mod light;
 mod line;
+pub mod marching;
 mod matter;
 pub mod path;
 pub mod picture;
@@ -31,6 +34,7 @@ mod walk;
 mod world;
 
 pub use field::{Body, DensityField};
+pub use grid::{GridError, GridField};
 pub use light::Emitter;
 pub use matter::Matter;
 pub use probe::{Effort, probe};

@@ -67,6 +67,11 @@ impl Segment {
         self.cumulative.iter_mut().for_each(|c| *c /= running);
     }
 
+    /// Whether the ray has no length: it starts where it ends, on the ground.
+    pub fn is_empty(&self) -> bool {
+        self.cumulative.is_empty()
+    }
+
     /// A distance (m) and its density (1/m) from a number in [0, 1[.
     pub fn sample(&self, u: f64) -> (f64, f64) {
         let cell = self.cumulative.partition_point(|&c| c <= u).min(self.cumulative.len() - 1);

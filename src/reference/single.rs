@@ -104,7 +104,8 @@ fn source(world: &World, p: DVec3, d: DVec3, span: &Span, t_m: f64) -> Bands {
     spectrum::product(total, spectrum::attenuation(depth))
 }
 
-fn in_scattering(world: &World, at: DVec3, cos_theta: f64) -> Bands {
+/// b P(cos θ) of everything at a point, 1/m/sr.
+pub fn in_scattering(world: &World, at: DVec3, cos_theta: f64) -> Bands {
     let mut density = Vec::new();
     let mut total = world.air.local(world.shape.altitude(at), &mut density).in_scattering(cos_theta);
     for body in world.bodies.iter() {

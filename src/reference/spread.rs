@@ -82,7 +82,8 @@ impl Walker<'_> {
         let offset = self.draw.uniform();
         let mut depth = spectrum::ZERO;
         let mut from = span.start_m;
-        for i in 0..POINTS {
+        let points = if segment.is_empty() { 0 } else { POINTS };
+        for i in 0..points {
             let (t, pdf) = segment.sample((i as f64 + offset) / POINTS as f64);
             spectrum::accumulate(&mut depth, 1.0, world.air.optical_depth(&line, from, t));
             from = t;
