@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use crate::quadrature::{GaussNode, gauss_legendre};
+
 /// Points of the rule on one panel.
 const POINTS: usize = 16;
 
@@ -9,21 +11,8 @@ const POINTS: usize = 16;
 /// function's singularity lies beyond the end by (1 - g)²/2g, 5e-9 at g = 0.9999, so the last panels are shorter.
 const PANELS: i32 = 32;
 
-/// Nodes in [-1, 1] and weights of the Gauss-Legendre rule with [`POINTS`] points.
-static RULE: LazyLock<[(f64, f64); POINTS]> = LazyLock::new(|| {
-    std::array::from_fn(|i| {
-        let n = POINTS as f64;
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
-        let mut slope = 0.0;
-        // Newton from this start gains a digit more than twice a step; six are ample for 16 digits.
-        for _ in 0..6 {
-            let (p, previous) = (legendre(POINTS, x), legendre(POINTS - 1, x));
-            slope = n * (x * p - previous) / (x * x - 1.0);
-            x -= p / slope;
-        }
-        (x, 2.0 / ((1.0 - x * x) * slope * slope))
-    })
-});
+/// The Gauss-Legendre rule on [0, 1] with [`POINTS`] points.
+static RULE: LazyLock<Vec<GaussNode>> = LazyLock::new(|| gauss_legendre(POINTS));
 
 /// The Legendre polynomial P_l(x).
 pub(super) fn legendre(l: usize, x: f64) -> f64 {
@@ -37,8 +26,7 @@ pub(super) fn legendre(l: usize, x: f64) -> f64 {
 
 /// ∫ f dx over [a, b]; exact for polynomials of degree 31.
 pub(super) fn integrate_panel(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
-    half * RULE.iter().map(|&(x, weight)| weight * f(middle + half * x)).sum::<f64>()
+    (b - a) * RULE.iter().map(|node| node.weight * f(a + (b - a) * node.abscissa)).sum::<f64>()
 }
 
 /// ∫ f dx over [-1, 1] for an f that is smooth inside, however steep towards the ends.
