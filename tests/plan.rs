@@ -1,0 +1,182 @@
+//! What a scene calls for is computed, and nothing else; what still holds is not computed again.
+
+mod common;
+
+use std::path::Path;
+
+use welkin::gpu::{DeviceRequest, Validation};
+use welkin::plan::{Decision, Outputs, Plan, Quality, Settings};
+use welkin::renderer::{Rendered, Renderer};
+use welkin::scene::{Light, PointLight, Scene};
+
+const PICTURE: Outputs = Outputs { capture: true, picture: true };
+
+fn noon() -> Scene {
+    let mut scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/noon.toml")).unwrap();
+    (scene.camera.width, scene.camera.height) = (33, 21);
+    scene
+}
+
+fn plan(scene: &Scene) -> Plan {
+    Renderer::plan(scene, Settings::of(Quality::Low), PICTURE).unwrap()
+}
+
+fn names(plan: &Plan, decision: Decision) -> Vec<&'static str> {
+    plan.passes.iter().filter(|pass| pass.decision == decision).map(|pass| pass.name).collect()
+}
+
+fn reason(plan: &Plan, name: &str) -> String {
+    plan.passes.iter().find(|pass| pass.name == name).unwrap().reason.clone()
+}
+
+/// Renders scenes one after the other on one renderer, under validation.
+fn render(scenes: &[Scene]) -> Vec<Rendered> {
+    let _alone = common::alone();
+    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
+    let mut renderer = Renderer::new(&request).unwrap();
+    let log = renderer.gpu().validation_log();
+    let settings = Settings::of(Quality::Low);
+    let rendered = scenes.iter().map(|scene| renderer.render(scene, settings, PICTURE).unwrap()).collect();
+    drop(renderer);
+    assert!(log.messages().is_empty(), "{:?}", log.messages());
+    rendered
+}
+
+#[test]
+fn a_clear_day_runs_every_pass_and_every_reason_says_something() {
+    let plan = plan(&noon());
+    assert!(names(&plan, Decision::Skip).is_empty());
+    assert!(plan.passes.iter().all(|pass| !pass.reason.is_empty() && pass.bytes > 0));
+}
+
+#[test]
+fn vacuum_runs_no_table_and_shows_lit_ground_under_a_black_sky() {
+    let mut scene = noon();
+    scene.medium.constituents.clear();
+    let plan = plan(&scene);
+    assert_eq!(names(&plan, Decision::Run), ["compose", "display"]);
+    assert!(reason(&plan, "sky_view").contains("vacuum"));
+    let frame = &render(&[scene.clone()])[0].frame;
+    // The sun stands 60° high: the ground sends back albedo / pi of its irradiance on the horizontal.
+    let Light::Directional(sun) = &scene.lights[0] else { panic!("the sun is directional") };
+    let ground =
+        scene.planet.ground_albedo[1] / std::f64::consts::PI * sun.irradiance[1] * sun.direction.elevation_rad.sin();
+    let below = frame.radiance[33 * 20 + 16][1];
+    assert!((f64::from(below) / ground - 1.0).abs() < 1e-5, "{below} against {ground}");
+    assert_eq!(frame.radiance[16], [0.0; 3]);
+    assert!(frame.transmittance.iter().all(|transmittance| *transmittance == [1.0; 3]));
+}
+
+#[test]
+fn air_that_only_absorbs_needs_no_multiple_scattering() {
+    let mut scene = noon();
+    for constituent in &mut scene.medium.constituents {
+        constituent.absorption_per_m = constituent.extinction_per_m();
+        constituent.scattering_per_m = [0.0; 3];
+    }
+    let plan = plan(&scene);
+    assert_eq!(names(&plan, Decision::Skip), ["first_order", "higher_order"]);
+    assert!(reason(&plan, "first_order").contains("scatters"));
+    let frame = &render(&[scene])[0].frame;
+    assert_eq!(frame.radiance[16], [0.0; 3]);
+    // The sun still lights the ground through the air.
+    assert!(frame.radiance[33 * 20 + 16].iter().all(|&radiance| radiance > 0.0));
+}
+
+#[test]
+fn in_the_dark_nothing_scatters_but_the_air_still_weakens() {
+    let mut scene = noon();
+    scene.lights.clear();
+    assert_eq!(names(&plan(&scene), Decision::Skip), ["first_order", "higher_order"]);
+    let frame = &render(&[scene])[0].frame;
+    assert!(frame.radiance.iter().all(|radiance| *radiance == [0.0; 3]));
+    assert!(frame.transmittance[16].iter().all(|&t| t > 0.0 && t < 1.0));
+}
+
+#[test]
+fn below_the_ground_nothing_runs_and_the_picture_is_black() {
+    let mut scene = noon();
+    scene.camera.altitude_m = -10.0;
+    let plan = plan(&scene);
+    assert!(names(&plan, Decision::Run).is_empty());
+    assert!(reason(&plan, "compose").contains("below the ground"));
+    let rendered = &render(&[scene])[0];
+    assert!(rendered.frame.radiance.iter().all(|radiance| *radiance == [0.0; 3]));
+    assert_eq!(rendered.picture.as_ref().unwrap().iter().max(), Some(&0));
+}
+
+#[test]
+fn what_depends_on_nothing_that_changed_is_reused_and_gives_the_same_picture() {
+    let first = noon();
+    let mut turned = noon();
+    turned.camera.direction.azimuth_rad += 1.0;
+    let mut later = noon();
+    if let Light::Directional(sun) = &mut later.lights[0] {
+        sun.direction.elevation_rad -= 0.1;
+    }
+    let mut brighter_ground = noon();
+    brighter_ground.planet.ground_albedo = [0.9; 3];
+    let rendered = render(&[first.clone(), first.clone(), turned, later, brighter_ground, first]);
+    let ran = |index: usize| names(&rendered[index].timings.plan, Decision::Run);
+    assert_eq!(ran(0).len(), 7);
+    assert!(ran(1).is_empty());
+    assert_eq!(ran(2), ["compose", "display"]);
+    assert_eq!(ran(3), ["sky_view", "compose", "display"]);
+    assert_eq!(ran(4), ["first_order", "higher_order", "sky_view", "compose", "display"]);
+    assert_eq!(rendered[0].frame, rendered[1].frame);
+    assert_eq!(rendered[0].frame, rendered[5].frame);
+    // Negative control: what did change is seen.
+    assert_ne!(rendered[0].frame, rendered[3].frame);
+}
+
+#[test]
+fn each_light_adds_its_own_sky() {
+    let one = noon();
+    let mut two = noon();
+    let Light::Directional(sun) = &two.lights[0] else { panic!("the sun is directional") };
+    let mut twin = sun.clone();
+    twin.direction.azimuth_rad += 2.0;
+    two.lights.push(Light::Directional(twin.clone()));
+    let mut other = noon();
+    other.lights = vec![Light::Directional(twin)];
+    let frames: Vec<_> = render(&[one, other, two]).into_iter().map(|rendered| rendered.frame).collect();
+    for (pixel, both) in frames[2].radiance.iter().enumerate() {
+        for band in 0..3 {
+            let sum = frames[0].radiance[pixel][band] + frames[1].radiance[pixel][band];
+            assert!((both[band] / sum - 1.0).abs() < 1e-5, "pixel {pixel}: {} against {sum}", both[band]);
+        }
+    }
+}
+
+#[test]
+fn what_the_renderer_cannot_do_is_refused_with_the_way_out() {
+    let mut scene = noon();
+    let light = PointLight { name: "lamp".into(), position_m: glam::DVec3::Z, intensity: [1.0; 3] };
+    scene.lights.push(Light::Point(light));
+    let error = Renderer::plan(&scene, Settings::of(Quality::Low), PICTURE).unwrap_err().to_string();
+    assert!(error.contains("lamp") && error.contains("--backend reference"), "{error}");
+}
+
+#[test]
+fn every_view_from_the_ground_to_the_moon_is_finite_and_never_negative() {
+    let mut scenes = Vec::new();
+    for altitude_m in [0.0, 1e-3, 2.0, 99_999.99, 100_000.0, 100_000.01, 400_000.0, 3.8e8] {
+        for elevation_deg in [90.0_f64, 0.0, -1e-5, -45.0, -90.0] {
+            for sun_deg in [90.0_f64, 0.0, -6.0, -90.0] {
+                let mut scene = noon();
+                scene.camera.altitude_m = altitude_m;
+                scene.camera.direction.elevation_rad = elevation_deg.to_radians();
+                if let Light::Directional(sun) = &mut scene.lights[0] {
+                    sun.direction.elevation_rad = sun_deg.to_radians();
+                }
+                scenes.push(scene);
+            }
+        }
+    }
+    for (scene, rendered) in scenes.iter().zip(render(&scenes)) {
+        let radiance = rendered.frame.radiance.iter().flatten();
+        assert!(radiance.clone().all(|value| value.is_finite() && *value >= 0.0), "{:?}", scene.camera);
+        let mut transmittance = rendered.frame.transmittance.iter().flatten();
+        assert!(transmittance.all(|t| (0.0..=1.0).contains(t)), "{:?}", scene.camera);
+    }
+}
