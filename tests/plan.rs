@@ -180,3 +180,32 @@ fn every_view_from_the_ground_to_the_moon_is_finite_and_never_negative() {
         assert!(transmittance.all(|t| (0.0..=1.0).contains(t)), "{:?}", scene.camera);
     }
 }
+
+#[test]
+fn the_suns_disc_brings_its_irradiance_however_few_pixels_it_covers() {
+    // Pixels of 1.2°, 0.5° and 0.04°, around a disc of 0.53°.
+    for (field_of_view_deg, height) in [(60.0_f64, 50), (60.0, 121), (4.0, 100)] {
+        let mut scene = noon();
+        scene.medium.constituents.clear();
+        let Light::Directional(sun) = &mut scene.lights[0] else { panic!("the sun is directional") };
+        let irradiance = sun.irradiance;
+        scene.camera.direction = sun.direction;
+        scene.camera.direction.azimuth_rad += 0.01;
+        scene.camera.vertical_field_of_view_rad = field_of_view_deg.to_radians();
+        (scene.camera.width, scene.camera.height) = (height, height);
+        let frame = &render(&[scene.clone()])[0].frame;
+        let [_, _, forward] = scene.camera.basis();
+        let side = 2.0 * (0.5 * scene.camera.vertical_field_of_view_rad).tan() / f64::from(height);
+        for band in 0..3 {
+            let mut sum = 0.0;
+            for (pixel, radiance) in frame.radiance.iter().enumerate() {
+                let (x, y) = (pixel as u32 % height, pixel as u32 / height);
+                let view = scene.camera.direction_through(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                sum += f64::from(radiance[band]) * side * side * view.dot(forward).powi(3);
+            }
+            // A disc of a pixel or two is caught by few samples of its blur, which leaves some per cent.
+            let error = (sum / irradiance[band] - 1.0).abs();
+            assert!(error < 0.12, "{field_of_view_deg}° in {height} rows, band {band}: {error}");
+        }
+    }
+}

@@ -25,7 +25,8 @@ fn view_direction(pixel: vec2<u32>) -> vec3<f32> {
     return normalize(camera.forward + x.x * camera.right + x.y * camera.up);
 }
 
-// Angle between neighbouring pixels at the centre of the picture, rad.
-fn pixel_angle_rad() -> f32 {
-    return 2.0 * camera.half_height / camera.size.y;
+// Angle between neighbouring pixels around a direction, rad: the mean of those along and across the picture's radius.
+fn pixel_angle_rad(view: vec3<f32>) -> f32 {
+    let cosine = dot(view, camera.forward);
+    return 2.0 * camera.half_height / camera.size.y * cosine * sqrt(cosine);
 }

@@ -27,24 +27,30 @@ fn relative_to_light(view: vec3<f32>, light: u32) -> SkyDirection {
     return direction;
 }
 
-// Radiance of a light's disc per unit irradiance, 1/sr, averaged over the pixel at its edge.
+// Radiance of a light's disc per unit irradiance, 1/sr, spread over the pixels that it touches so that together they
+// receive its irradiance, however small it is.
 fn disc_radiance(view: vec3<f32>, light: u32) -> vec3<f32> {
     let disc = observer.lights[light];
     if disc.angular_radius_rad <= 0.0 {
         return vec3<f32>(0.0);
     }
+    let blur_rad = pixel_angle_rad(view);
+    let radius_rad = max(disc.angular_radius_rad, 0.5 * blur_rad);
     // The chord keeps the digits that the arc cosine of nu would lose.
     let angle_rad = 2.0 * asin(0.5 * min(distance(view, disc.direction), 2.0));
-    let coverage = clamp((disc.angular_radius_rad - angle_rad) / pixel_angle_rad() + 0.5, 0.0, 1.0);
+    let coverage = clamp((radius_rad - angle_rad) / blur_rad + 0.5, 0.0, 1.0);
     if coverage == 0.0 {
         return vec3<f32>(0.0);
     }
-    let x = min(angle_rad / disc.angular_radius_rad, 1.0);
+    let x = min(angle_rad / radius_rad, 1.0);
     let cosine = sqrt(max(1.0 - x * x, 1e-4));
-    let sine = sin(disc.angular_radius_rad);
+    // A disc of a few pixels has no limb that could be told apart.
+    let exponent = disc.limb_exponent * clamp(disc.angular_radius_rad / blur_rad - 1.0, 0.0, 1.0);
     // The mean of cosine^k over the disc is 2 / (2 + k).
-    let profile = 0.5 * (2.0 + disc.limb_exponent) * pow(vec3<f32>(cosine), disc.limb_exponent);
-    return coverage * profile / (PI * sine * sine);
+    let profile = 0.5 * (2.0 + exponent) * pow(vec3<f32>(cosine), exponent);
+    // The solid angle under the coverage, a cone that is cut off at its top.
+    let solid_angle_sr = PI * (radius_rad * radius_rad + blur_rad * blur_rad / 12.0);
+    return coverage * profile / solid_angle_sr;
 }
 
 @compute @workgroup_size(8, 8)

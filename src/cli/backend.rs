@@ -16,6 +16,16 @@ pub enum Backend {
     Reference,
 }
 
+impl Backend {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gpu => "gpu",
+            Self::Reference => "reference",
+        }
+    }
+}
+
 /// Opens a device by a part of its name or its index, else the best one, and says which.
 pub fn open_renderer(device: Option<&str>) -> Result<Renderer, Failure> {
     let request = DeviceRequest { device: device.map(str::to_owned), validation: Validation::Off };

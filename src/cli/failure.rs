@@ -17,8 +17,8 @@ pub enum Failure {
     Input(anyhow::Error),
     /// There is no usable Vulkan device. Exit code 3.
     NoDevice(anyhow::Error),
-    /// The user interrupted; `--resume` goes on from this checkpoint. Exit code [`INTERRUPTED`].
-    Interrupted(PathBuf),
+    /// The user interrupted; `--resume` goes on from the checkpoint, where there is one. Exit code [`INTERRUPTED`].
+    Interrupted(Option<PathBuf>),
 }
 
 impl Failure {
@@ -44,8 +44,11 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Check(message) => write!(f, "failed: {message}"),
-            Self::Interrupted(checkpoint) => {
+            Self::Interrupted(Some(checkpoint)) => {
                 write!(f, "interrupted; --resume goes on from '{}'", checkpoint.display())
+            }
+            Self::Interrupted(None) => {
+                write!(f, "interrupted, nothing is written; `welkin reference` keeps what it has reached")
             }
             // The alternate form joins an error with its causes.
             Self::Input(error) | Self::NoDevice(error) => write!(f, "error: {error:#}"),

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::watch::Watch;
+use super::watch::{Checkpoint, Watch};
 use super::{Failure, exr_output};
 use welkin::output::{AtomicFile, ExrHeader};
 use welkin::reference::picture::{
@@ -53,11 +53,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // Made and dropped again: a place that cannot be written is refused before the work.
     AtomicFile::create(&arguments.output)?;
     let mut film = begin(arguments, &checkpoint, &identity, view.pixels())?;
-    let watch = Watch::new(&film, &sampling, &checkpoint, &identity)?;
+    let watch =
+        Watch::new(&film, &sampling, Some(Checkpoint { path: checkpoint.clone(), identity: identity.clone() }))?;
     let started = Instant::now();
     if expose(&&view, &mut film, &sampling.stop(), &watch)? == Outcome::Interrupted {
         picture::save(&checkpoint, &identity, &film)?;
-        return Err(Failure::Interrupted(checkpoint));
+        return Err(Failure::Interrupted(Some(checkpoint)));
     }
     watch.finish();
     let part = Part { identity, frame: view.develop(&film), header: ExrHeader::of_scene(&scene) };

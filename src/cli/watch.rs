@@ -16,13 +16,20 @@ use welkin::reference::picture::{self, Film, Identity, Observer, Sampling};
 /// Time between two checkpoints, which is at most lost when a machine fails.
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
 
-/// Shows and keeps what an exposure has reached.
+/// Where an exposure's state is kept, and what it belongs to.
+pub struct Checkpoint {
+    /// The file.
+    pub path: PathBuf,
+    /// What it belongs to.
+    pub identity: Identity,
+}
+
+/// Shows what an exposure has reached, and keeps it where there is a checkpoint.
 pub struct Watch {
     bar: ProgressBar,
     interrupted: Arc<AtomicBool>,
     saved: Mutex<Instant>,
-    checkpoint: PathBuf,
-    identity: Identity,
+    checkpoint: Option<Checkpoint>,
     sampling: Sampling,
 }
 
@@ -32,12 +39,7 @@ impl Watch {
     ///
     /// # Errors
     /// Those of the system's signals.
-    pub fn new(
-        film: &Film,
-        sampling: &Sampling,
-        checkpoint: &std::path::Path,
-        identity: &Identity,
-    ) -> io::Result<Self> {
+    pub fn new(film: &Film, sampling: &Sampling, checkpoint: Option<Checkpoint>) -> io::Result<Self> {
         let interrupted = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&interrupted);
         ctrlc::set_handler(move || {
@@ -50,14 +52,7 @@ impl Watch {
         bar.set_position(film.pixels.iter().map(|pixel| pixel.batches).sum());
         bar.reset_eta();
         let saved = Mutex::new(Instant::now());
-        let watch = Self {
-            bar,
-            interrupted,
-            saved,
-            checkpoint: checkpoint.into(),
-            identity: identity.clone(),
-            sampling: *sampling,
-        };
+        let watch = Self { bar, interrupted, saved, checkpoint, sampling: *sampling };
         watch.show(film);
         Ok(watch)
     }
@@ -97,8 +92,10 @@ impl Observer for Watch {
             self.show(film);
         }
         let mut saved = self.saved.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        if saved.elapsed() > CHECKPOINT_EVERY {
-            picture::save(&self.checkpoint, &self.identity, film)?;
+        if let Some(Checkpoint { path, identity }) = &self.checkpoint
+            && saved.elapsed() > CHECKPOINT_EVERY
+        {
+            picture::save(path, identity, film)?;
             *saved = Instant::now();
         }
         Ok(())

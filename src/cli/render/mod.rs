@@ -1,0 +1,108 @@
+//! `welkin render`: what the scene's camera sees.
+
+mod gpu;
+mod reference;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use welkin::frame::Frame;
+use welkin::output::{AtomicFile, write_exr, write_png};
+use welkin::plan::{Outputs, Quality};
+use welkin::scene::Scene;
+
+use super::backend::Backend;
+use super::{Failure, stdout};
+
+/// Render a scene to pictures
+///
+/// Prints what became of each pass: its time, or why it did not run.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// The scene file
+    scene: PathBuf,
+    /// A picture to write: linear radiance as .exr, what a screen shows as .png; may be given several times
+    #[arg(short, long, value_name = "FILE")]
+    output: Vec<PathBuf>,
+    /// What computes light
+    #[arg(long, value_enum, default_value = "gpu")]
+    backend: Backend,
+    /// How accurate the gpu backend is: low, medium (default), high or ultra
+    #[arg(long, value_name = "Q")]
+    quality: Option<Quality>,
+    /// The gpu backend's device, by a part of its name or its index
+    #[arg(long, value_name = "NAME")]
+    device: Option<String>,
+    /// Walks of the reference backend for each pixel [default: 256]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..))]
+    samples: Option<u64>,
+    /// Write what was computed, and how long it took, to a JSON file
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// What a backend brings back.
+struct Rendered {
+    frame: Frame,
+    /// sRGB bytes; empty unless a PNG was asked for.
+    picture: Vec<u8>,
+    /// What was computed, for people and for programs.
+    text: String,
+    json: String,
+}
+
+/// What a file's name asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Exr,
+    Png,
+}
+
+/// Renders, and writes what was asked for.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    check_backend_options(arguments)?;
+    let scene = Scene::read(&arguments.scene)?;
+    let formats = arguments.output.iter().map(|path| format_of(path)).collect::<Result<Vec<_>, _>>()?;
+    // Opened first: a place that cannot be written is said before time is spent.
+    let files = arguments.output.iter().map(|path| AtomicFile::create(path)).collect::<Result<Vec<_>, _>>()?;
+    let json_file = arguments.json.as_deref().map(AtomicFile::create).transpose()?;
+    let outputs = Outputs { capture: formats.contains(&Format::Exr), picture: formats.contains(&Format::Png) };
+    let rendered = match arguments.backend {
+        Backend::Gpu => gpu::render(arguments, &scene, outputs)?,
+        Backend::Reference => reference::render(arguments, &scene, outputs)?,
+    };
+    for (file, format) in files.into_iter().zip(formats) {
+        let frame = &rendered.frame;
+        match format {
+            Format::Exr => write_exr(file, frame, &scene)?,
+            Format::Png => write_png(file, frame.width, frame.height, &rendered.picture)?,
+        }
+    }
+    if let Some(file) = json_file {
+        file.write_all(format!("{}\n", rendered.json).as_bytes())?;
+    }
+    Ok(stdout::print(&rendered.text)?)
+}
+
+/// An option that the chosen backend would not heed is refused rather than ignored.
+fn check_backend_options(arguments: &Arguments) -> Result<(), Failure> {
+    let unused = match arguments.backend {
+        Backend::Gpu => [("--samples", arguments.samples.is_some()), ("", false)],
+        Backend::Reference => [("--quality", arguments.quality.is_some()), ("--device", arguments.device.is_some())],
+    };
+    match unused.iter().find(|(_, given)| *given) {
+        Some((option, _)) => Err(Failure::Input(anyhow::anyhow!(
+            "{option} says nothing to the {} backend; leave it out or choose the other --backend",
+            arguments.backend.name()
+        ))),
+        None => Ok(()),
+    }
+}
+
+fn format_of(path: &Path) -> Result<Format, Failure> {
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("exr") => Ok(Format::Exr),
+        Some("png") => Ok(Format::Png),
+        _ => Err(Failure::Input(anyhow::anyhow!("output '{}' must end in .exr or .png", path.display()))),
+    }
+}
