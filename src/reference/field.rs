@@ -23,6 +23,19 @@ pub trait DensityField: std::fmt::Debug + Send + Sync {
     /// inside the bounds, in which one majorant holds: (its end m, its majorant). The end must lie beyond `from_m`.
     fn stretch(&self, p: DVec3, d: DVec3, from_m: f64) -> (f64, f64);
 
+    /// Calls `visit` with the end (m) and the majorant of one stretch of a ray after the other, from one distance inside
+    /// the bounds to another, until it says false. Fields that can walk from stretch to stretch do better than this.
+    fn march(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64, visit: &mut dyn FnMut(f64, f64) -> bool) {
+        let mut t = from_m;
+        while t < to_m {
+            let (end_m, majorant) = self.stretch(p, d, t);
+            if !visit(end_m.min(to_m), majorant) {
+                return;
+            }
+            t = end_m;
+        }
+    }
+
     /// A length over which the density changes little, m: where deterministic integration starts to subdivide.
     fn detail_m(&self) -> f64;
 }
@@ -54,41 +67,54 @@ impl Body {
     pub fn tentative(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64, unit_exponential: f64) -> Option<Tentative> {
         let largest = self.largest_extinction_per_m();
         let (start, end) = self.span(p, d)?;
-        let (mut t, end) = (start.max(from_m), end.min(to_m));
+        let mut t = start.max(from_m);
         let mut remaining = unit_exponential;
-        while t < end {
-            let (stretch_end, majorant) = self.field.stretch(p, d, t);
+        let mut found = None;
+        self.field.march(p, d, t, end.min(to_m), &mut |end_m, majorant| {
             let majorant_per_m = majorant * largest;
-            let depth = (stretch_end.min(end) - t) * majorant_per_m;
+            let depth = (end_m - t) * majorant_per_m;
             if depth > remaining {
-                return Some(Tentative { t_m: t + remaining / majorant_per_m, majorant_per_m });
+                found = Some(Tentative { t_m: t + remaining / majorant_per_m, majorant_per_m });
+                return false;
             }
             remaining -= depth;
-            t = stretch_end;
-        }
-        None
+            t = end_m;
+            true
+        });
+        found
     }
 
     /// An unbiased estimate of the transmittance over a distance: the product of the shares of null matter at the
     /// tentative collisions (Novák et al. 2014), ended by Russian roulette where it hardly matters any more.
     pub fn ratio_tracking(&self, p: DVec3, d: DVec3, to_m: f64, draw: &mut Draw) -> Bands {
         const ROULETTE_BELOW: f64 = 0.1;
+        let largest = self.largest_extinction_per_m();
         let mut transmittance = spectrum::ONE;
-        let mut t = 0.0;
-        while let Some(found) = self.tentative(p, d, t, to_m, draw.exponential()) {
-            t = found.t_m;
-            let density = self.field.density(p + d * t);
-            let null = self.matter[0].extinction_per_m.map(|c| 1.0 - density * c / found.majorant_per_m);
-            transmittance = spectrum::product(transmittance, null);
-            let largest = spectrum::largest(transmittance);
-            if largest < ROULETTE_BELOW {
-                let survival = largest / ROULETTE_BELOW;
-                if draw.uniform() >= survival {
-                    return spectrum::ZERO;
+        let Some((start, end)) = self.span(p, d) else { return transmittance };
+        let mut t = start;
+        let mut remaining = draw.exponential();
+        self.field.march(p, d, start, end.min(to_m), &mut |end_m, majorant| {
+            let majorant_per_m = majorant * largest;
+            while (end_m - t) * majorant_per_m > remaining {
+                t += remaining / majorant_per_m;
+                remaining = draw.exponential();
+                let density = self.field.density(p + d * t);
+                let null = self.matter[0].extinction_per_m.map(|c| 1.0 - density * c / majorant_per_m);
+                transmittance = spectrum::product(transmittance, null);
+                let most = spectrum::largest(transmittance);
+                if most < ROULETTE_BELOW {
+                    let survival = most / ROULETTE_BELOW;
+                    if draw.uniform() >= survival {
+                        transmittance = spectrum::ZERO;
+                        return false;
+                    }
+                    transmittance = transmittance.map(|w| w / survival);
                 }
-                transmittance = transmittance.map(|w| w / survival);
             }
-        }
+            remaining -= (end_m - t) * majorant_per_m;
+            t = end_m;
+            true
+        });
         transmittance
     }
 }
