@@ -126,6 +126,13 @@ fn a_planet_that_absorbs_nothing_is_invisible_in_uniform_light() {
             assert_equal(estimate.mean.total()[band], 1.0, estimate.total_error[band], &label);
         }
     }
+    // Control: with haze and ozone it is seen.
+    let mut hazy = tables::earth("B", 1.0);
+    hazy.lights.clear();
+    sky(&mut hazy);
+    let view = View::new(&hazy, DVec3::new(0.0, 0.0, 2.0), direction(1.5, 0.4), FirstOrderBy::Quadrature);
+    let estimate = run(&view, Effort::Walks(4096), Orders::All, 1, 0);
+    assert!(1.0 - estimate.mean.total()[1] > 4.0 * estimate.total_error[1]);
 }
 
 #[test]
@@ -149,6 +156,11 @@ fn an_even_grid_scatters_like_an_even_filling() {
     let error = a.total_error[0].hypot(b.total_error[0]);
     assert_equal(a.mean.total()[0], b.mean.total()[0], error, "all orders");
     assert!(error < 0.02 * a.mean.total()[0]);
+    // Control: a filling that absorbs a tenth more is told apart.
+    let mut darker = grid_cube(4.0, 0.85, PhaseFunction::HenyeyGreenstein { g: 0.6 }, |_| 1.0);
+    sun(&mut darker);
+    let c = trace(&darker, FirstOrderBy::Walks, 65_536);
+    assert!((a.mean.total()[0] - c.mean.total()[0]).abs() > 4.0 * a.total_error[0].hypot(c.total_error[0]));
 }
 
 #[test]
@@ -164,6 +176,8 @@ fn order_one_of_the_walks_is_what_quadrature_finds() {
         let walked = trace(&world, FirstOrderBy::Walks, 65_536);
         assert_equal(walked.mean.single[0], exact.single.value[0], walked.single_error[0], "grid");
         assert!(walked.single_error[0] < 0.02 * exact.single.value[0]);
+        // Control: all orders together are not order 1.
+        assert!(walked.mean.total()[0] - exact.single.value[0] > 4.0 * walked.total_error[0]);
     }
     let earth = tables::earth("A", 0.3).with_sun(direction(1.4, 0.0));
     let position = DVec3::new(0.0, 0.0, 500.0);
@@ -189,6 +203,10 @@ fn a_small_disc_lights_like_a_beam() {
         let error = a.total_error[0].hypot(b.total_error[0]);
         assert_equal(a.mean.total()[0], b.mean.total()[0], error, "disc");
         assert!(error < 0.02 * a.mean.total()[0]);
+        // Control: a disc that stands elsewhere lights otherwise.
+        let turned = disc.with_sun(DVec3::new(0.8, -0.5, 0.3).normalize());
+        let c = trace(&turned, FirstOrderBy::Walks, 65_536);
+        assert!((a.mean.total()[0] - c.mean.total()[0]).abs() > 4.0 * a.total_error[0].hypot(c.total_error[0]));
     }
 }
 
@@ -207,6 +225,10 @@ fn bands_that_share_walks_keep_their_own_radiance_however_different_they_are() {
         let error = together.total_error[band].hypot(alone.total_error[band]);
         assert_equal(together.mean.total()[band], alone.mean.total()[band], error, &format!("{extinction} per metre"));
         assert!(error < 0.1 * alone.mean.total()[band]);
+        // Control: the next band's radiance is another one.
+        let next = (band + 1) % 3;
+        let difference = (together.mean.total()[next] - alone.mean.total()[band]).abs();
+        assert!(difference > 4.0 * together.total_error[next].hypot(alone.total_error[band]));
     }
 }
 

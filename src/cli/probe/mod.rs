@@ -17,7 +17,7 @@ use super::backend::{Backend, failure, open_renderer};
 use table::RayTable;
 
 /// Share of the radiance that one standard error may be where `--samples` is not given.
-const RELATIVE_ERROR: f64 = 0.01;
+const RELATIVE_ERROR: f64 = 0.005;
 
 /// Compute the radiance along rays from a CSV file
 ///
@@ -43,7 +43,7 @@ pub struct Arguments {
     /// The gpu backend's device, by a part of its name or its index
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
-    /// Walks of the reference backend for each ray; by default as many as bring one standard error to 1 %
+    /// Walks of the reference backend for each ray; by default as many as bring one standard error to 0.5 %
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     samples: Option<u64>,
     /// Which orders of scattering count
