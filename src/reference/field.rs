@@ -43,7 +43,7 @@ pub trait DensityField: std::fmt::Debug + Send + Sync {
 /// A density field filled with one kind of matter.
 #[derive(Debug, Clone)]
 pub struct Body {
-    /// What it is made of; always exactly one constituent, as a slice for [`super::matter::Local`].
+    /// What it is made of; always exactly one constituent, as a slice, which is how matter is summed up everywhere.
     pub matter: [Matter; 1],
     /// Where it is.
     pub field: Arc<dyn DensityField>,
