@@ -1,6 +1,6 @@
 //! Times the reference on two problems that other renderers can be given as well; `benches/mitsuba/compare.py` runs it.
 //!
-//! `reference_speed slab TAU ALBEDO G MU0 PHOTONS SEED` prints {seconds, reflectance}.
+//! `reference_speed slab TAU ALBEDO G MU0 PHOTONS SEED` prints {seconds, reflectance, standard_error}.
 //! `reference_speed grid FILE N SIGMA_T ALBEDO G WIDTH SAMPLES SEED` prints {seconds, pixels}: FILE holds N³ densities in
 //! [0, 1] as little-endian f32, x first, in the cube [-1, 1]³; the light comes from (1, 2, 3)/√14 with irradiance 1;
 //! the camera is orthographic, looks along +y and frames the cube's side with WIDTH² pixels, x to the right, top first.
@@ -37,7 +37,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             let started = Instant::now();
             let fluxes = slab.fluxes(number(5)? as u64, number(6)? as u64);
             let seconds = started.elapsed().as_secs_f64();
-            println!("{}", serde_json::json!({"seconds": seconds, "reflectance": fluxes.reflectance.value}));
+            let (value, error) = (fluxes.reflectance.value, fluxes.reflectance.standard_error);
+            let result = serde_json::json!({"seconds": seconds, "reflectance": value, "standard_error": error});
+            println!("{result}");
             Ok(())
         }
         Some("grid") => {
