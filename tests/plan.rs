@@ -141,9 +141,9 @@ fn each_light_adds_its_own_sky() {
     other.lights = vec![Light::Directional(twin)];
     let frames: Vec<_> = render(&[one, other, two]).into_iter().map(|rendered| rendered.frame).collect();
     for (pixel, both) in frames[2].radiance.iter().enumerate() {
-        for band in 0..3 {
-            let sum = frames[0].radiance[pixel][band] + frames[1].radiance[pixel][band];
-            assert!((both[band] / sum - 1.0).abs() < 1e-5, "pixel {pixel}: {} against {sum}", both[band]);
+        let [one, other] = [&frames[0], &frames[1]].map(|frame| frame.radiance[pixel]);
+        for ((both, one), other) in both.iter().zip(one).zip(other) {
+            assert!((both / (one + other) - 1.0).abs() < 1e-5, "pixel {pixel}: {both} against {one} + {other}");
         }
     }
 }

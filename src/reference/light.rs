@@ -26,8 +26,8 @@ pub enum Emitter {
         irradiance: Bands,
         /// Angular radius, rad.
         radius_rad: f64,
-        /// Whether it darkens towards its limb.
-        limb_darkening: bool,
+        /// k of its radiance, μ^k; see `DirectionalLight::limb_exponent`.
+        limb_exponent: Bands,
     },
     /// A point.
     Point {
@@ -61,12 +61,10 @@ fn disc_height(radius_rad: f64) -> f64 {
     2.0 * (0.5 * radius_rad).sin().powi(2)
 }
 
-/// Radiance of the sun's disc relative to its mean, at the squared sine of the angle from the disc's centre relative
-/// to that of its limb: I ∝ 1 - u (1 - cos ψ) with u = 0.6, the linear law for visible light (Cox, Allen's
-/// Astrophysical Quantities, 2000), whose disc average is 1 - u/3.
-fn limb_factor(relative_squared: f64) -> f64 {
-    const U: f64 = 0.6;
-    (1.0 - U * (1.0 - (1.0 - relative_squared).max(0.0).sqrt())) / (1.0 - U / 3.0)
+/// Radiance of a disc relative to its mean, at the squared sine of the angle from its centre relative to that of its
+/// limb.
+fn limb_factor(exponent: f64, relative_squared: f64) -> f64 {
+    0.5 * (2.0 + exponent) * (1.0 - relative_squared).max(0.0).powf(0.5 * exponent)
 }
 
 impl Emitter {
@@ -80,7 +78,7 @@ impl Emitter {
                 toward: sun.direction.to_vector(),
                 irradiance: sun.irradiance,
                 radius_rad: sun.angular_radius_rad,
-                limb_darkening: sun.limb_darkening,
+                limb_exponent: sun.limb_exponent(),
             },
             Light::Point(point) => Self::Point { position_m: point.position_m, intensity: point.intensity },
             Light::Environment(sky) => Self::Environment { radiance: sky.radiance },
@@ -134,11 +132,10 @@ impl Emitter {
 
     /// Radiance of a disc where 1 - cos of the angle from its centre is `relative_height` times that of its limb.
     fn disc_radiance_at(&self, relative_height: f64) -> Bands {
-        let Self::Disc { irradiance, radius_rad, limb_darkening, .. } = *self else { return [0.0; 3] };
+        let Self::Disc { irradiance, radius_rad, limb_exponent, .. } = *self else { return [0.0; 3] };
         // A uniform disc of radiance L gives π sin²α L on a plane normal to its centre.
         let projected = PI * radius_rad.sin().powi(2);
-        let factor = if limb_darkening { limb_factor(relative_height) } else { 1.0 };
-        irradiance.map(|e| factor * e / projected)
+        std::array::from_fn(|band| limb_factor(limb_exponent[band], relative_height) * irradiance[band] / projected)
     }
 
     /// Radiance arriving from a direction of space, and the density with which `sample` would choose it; `None` when

@@ -1,7 +1,7 @@
 //! What shines on the scene.
 
 use glam::DVec3;
-use welkin_lut::Bands;
+use welkin_lut::{BAND_COUNT, BAND_WAVELENGTHS_NM, Bands};
 
 use super::Direction;
 
@@ -29,6 +29,19 @@ pub struct DirectionalLight {
     pub angular_radius_rad: f64,
     /// Whether the disc darkens towards its limb as the sun's does.
     pub limb_darkening: bool,
+}
+
+impl DirectionalLight {
+    /// How the disc's radiance falls towards its limb: as μ^k, μ the cosine of the angle at which the line of sight
+    /// leaves the sun; zero for a disc without limb darkening. The mean of μ^k over a disc is 2 / (2 + k).
+    ///
+    /// k = -0.023 + 0.292 µm / λ: Hestroffer & Magnan 1998, A&A 333, 338, eq. 5.
+    pub fn limb_exponent(&self) -> Bands {
+        match self.limb_darkening {
+            true => BAND_WAVELENGTHS_NM.map(|wavelength_nm| -0.023 + 292.0 / wavelength_nm),
+            false => [0.0; BAND_COUNT],
+        }
+    }
 }
 
 /// A point source.

@@ -2,7 +2,6 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
-use welkin_lut::{BAND_WAVELENGTHS_NM, Bands};
 
 use super::vec3;
 use crate::plan::Facts;
@@ -39,11 +38,6 @@ pub(super) struct ObserverHeader {
     pub(super) view: SkyViewRangeBlock,
 }
 
-/// Solar limb darkening I(μ) = μ^k, k = -0.023 + 0.292 µm / λ: Hestroffer & Magnan 1998, A&A 333, 338, eq. 5.
-fn solar_limb_exponent() -> Bands {
-    BAND_WAVELENGTHS_NM.map(|wavelength_nm| -0.023 + 292.0 / wavelength_nm)
-}
-
 impl DirectionalLightBlock {
     fn new(light: &DirectionalLight) -> Self {
         Self {
@@ -51,7 +45,7 @@ impl DirectionalLightBlock {
             azimuth_rad: wrapped_azimuth_rad(light.direction.to_vector()) as f32,
             irradiance: vec3(light.irradiance),
             angular_radius_rad: light.angular_radius_rad as f32,
-            limb_exponent: if light.limb_darkening { vec3(solar_limb_exponent()) } else { [0.0; 3] },
+            limb_exponent: vec3(light.limb_exponent()),
             padding: 0.0,
         }
     }
