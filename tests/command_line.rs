@@ -16,6 +16,7 @@ const RAYS: &str = "label,altitude_m,view_zenith_deg,view_azimuth_deg,sun_zenith
 
 fn welkin(folder: &Path, arguments: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_welkin"));
+    command.env("WELKIN_VALIDATION", "1");
     command.current_dir(folder).args(arguments.split_whitespace()).output().unwrap()
 }
 
@@ -138,6 +139,7 @@ fn a_probe_keeps_the_rows_and_adds_the_answers() {
 fn a_machine_without_a_device_is_told_what_to_install() {
     let folder = folder_with(&[("scene.toml", SCENE), ("rays.csv", RAYS)]);
     let mut command = Command::new(env!("CARGO_BIN_EXE_welkin"));
+    command.env("WELKIN_VALIDATION", "1");
     command.current_dir(folder.path()).args(["probe", "scene.toml", "--rays", "rays.csv", "--out", "out.csv"]);
     // Both names of the variable that tells the loader which drivers there are.
     let output = command.env("VK_DRIVER_FILES", "/none").env("VK_ICD_FILENAMES", "/none").output().unwrap();
@@ -214,6 +216,7 @@ fn explain_says_what_becomes_of_every_pass_without_a_device() {
     let folder = folder_with(&[("scene.toml", SCENE), ("vacuum.toml", &vacuum)]);
     let decisions = |scene: &str| -> Vec<(String, String)> {
         let mut command = Command::new(env!("CARGO_BIN_EXE_welkin"));
+        command.env("WELKIN_VALIDATION", "1");
         let output = command.current_dir(folder.path()).args(["explain", scene, "--json"]);
         let output = output.env("VK_DRIVER_FILES", "/none").env("VK_ICD_FILENAMES", "/none").output().unwrap();
         assert_eq!(code(&output), 0, "{}", stderr(&output));

@@ -60,7 +60,7 @@ fn a_slab_that_absorbs_one_per_cent_more_is_told_apart() {
 
 #[test]
 fn van_de_hulsts_slab_reflects_and_transmits_what_his_tables_say() {
-    // Multiple Light Scattering (1980), table 35: τ 2, albedo 0.9, g 0.75, perpendicular light, black surface.
+    // Multiple Light Scattering (1980): τ 2, albedo 0.9, g 0.75, perpendicular light, black surface.
     let phase = PhaseFunction::HenyeyGreenstein { g: 0.75 };
     let slab = Slab { optical_thickness: 2.0, albedo: 0.9, phase, mu0: 1.0, surface_albedo: 0.0 };
     let own = slab.fluxes(400_000, 1);

@@ -1,7 +1,10 @@
 //! What computes light, and how it is opened.
 
+use std::env;
+use std::sync::OnceLock;
+
 use clap::ValueEnum;
-use welkin::gpu::{DeviceKind, DeviceRequest, Validation};
+use welkin::gpu::{DeviceKind, DeviceRequest, Validation, ValidationLog};
 use welkin::passes::RenderError;
 use welkin::renderer::Renderer;
 
@@ -26,10 +29,29 @@ impl Backend {
     }
 }
 
+/// When this environment variable is set, the validation layer watches, and a single message of it fails the command.
+const VALIDATION_VARIABLE: &str = "WELKIN_VALIDATION";
+
+static VALIDATION_LOG: OnceLock<ValidationLog> = OnceLock::new();
+
+/// Fails when the validation layer has had something to say, also while the device was closed.
+pub fn check_validation() -> Result<(), Failure> {
+    let messages = VALIDATION_LOG.get().map(ValidationLog::messages).unwrap_or_default();
+    match messages.first() {
+        Some(first) => {
+            Err(Failure::Check(format!("{} messages of the validation layer; the first: {first}", messages.len())))
+        }
+        None => Ok(()),
+    }
+}
+
 /// Opens a device by a part of its name or its index, else the best one, and says which.
 pub fn open_renderer(device: Option<&str>) -> Result<Renderer, Failure> {
-    let request = DeviceRequest { device: device.map(str::to_owned), validation: Validation::Off };
+    let validation = if env::var_os(VALIDATION_VARIABLE).is_some() { Validation::On } else { Validation::Off };
+    let request = DeviceRequest { device: device.map(str::to_owned), validation };
     let renderer = Renderer::new(&request).map_err(failure)?;
+    // Kept for `check_validation`; a command opens one device.
+    let _ = VALIDATION_LOG.set(renderer.gpu().validation_log());
     let info = renderer.gpu().info();
     match info.kind {
         DeviceKind::Cpu => eprintln!("device: {}, which computes on the CPU: no GPU was found or chosen", info.name),

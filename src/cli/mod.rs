@@ -58,7 +58,7 @@ pub fn run() -> ExitCode {
         Command::Schema(arguments) => schema::run(&arguments),
         Command::Slab(arguments) => slab::run(&arguments),
     };
-    match outcome {
+    match outcome.and_then(|()| backend::check_validation()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("{failure}");
