@@ -27,6 +27,18 @@ impl Backend {
             Self::Reference => "reference",
         }
     }
+
+    /// Refuses options that this backend would not heed: each with whose it is and whether it was given.
+    pub fn check_options(self, options: &[(&str, Self, bool)]) -> Result<(), Failure> {
+        match options.iter().find(|(_, owner, given)| *given && *owner != self) {
+            Some((option, owner, _)) => Err(Failure::Input(anyhow::anyhow!(
+                "{option} says nothing to the {} backend; leave it out or choose --backend {}",
+                self.name(),
+                owner.name()
+            ))),
+            None => Ok(()),
+        }
+    }
 }
 
 /// When this environment variable is set, the validation layer watches, and a single message of it fails the command.

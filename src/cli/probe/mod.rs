@@ -61,32 +61,16 @@ enum OrdersArgument {
 
 /// Reads the rays, traces them and writes the result.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    check_backend_options(arguments)?;
+    arguments.backend.check_options(&[
+        ("--quality", Backend::Gpu, arguments.quality.is_some()),
+        ("--device", Backend::Gpu, arguments.device.is_some()),
+        ("--samples", Backend::Reference, arguments.samples.is_some()),
+    ])?;
     let scene = Scene::read(&arguments.scene)?;
     let table = RayTable::read(&arguments.rays, scene.planet.radius_m)?;
     let out = AtomicFile::create(&arguments.out)?;
     let answers = trace(arguments, &scene, table.rays())?;
     Ok(out.write_all(&table.with_answers(&answers)?)?)
-}
-
-/// An option that the chosen backend would not heed is refused rather than ignored.
-fn check_backend_options(arguments: &Arguments) -> Result<(), Failure> {
-    let unused = match arguments.backend {
-        Backend::Gpu => [("--samples", arguments.samples.is_some()), ("", false)],
-        Backend::Reference => [("--quality", arguments.quality.is_some()), ("--device", arguments.device.is_some())],
-    };
-    match unused.iter().find(|(_, given)| *given) {
-        Some((option, _)) => {
-            let (backend, other) = match arguments.backend {
-                Backend::Gpu => ("gpu", "reference"),
-                Backend::Reference => ("reference", "gpu"),
-            };
-            Err(Failure::Input(anyhow::anyhow!(
-                "{option} says nothing to the {backend} backend; leave it out or choose --backend {other}"
-            )))
-        }
-        None => Ok(()),
-    }
 }
 
 fn trace(arguments: &Arguments, scene: &Scene, rays: &[Ray]) -> Result<Vec<RayRadiance>, Failure> {

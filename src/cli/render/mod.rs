@@ -60,7 +60,11 @@ enum Format {
 
 /// Renders, and writes what was asked for.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    check_backend_options(arguments)?;
+    arguments.backend.check_options(&[
+        ("--quality", Backend::Gpu, arguments.quality.is_some()),
+        ("--device", Backend::Gpu, arguments.device.is_some()),
+        ("--samples", Backend::Reference, arguments.samples.is_some()),
+    ])?;
     let scene = Scene::read(&arguments.scene)?;
     let formats = arguments.output.iter().map(|path| format_of(path)).collect::<Result<Vec<_>, _>>()?;
     // Opened first: a place that cannot be written is said before time is spent.
@@ -82,21 +86,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         file.write_all(format!("{}\n", rendered.json).as_bytes())?;
     }
     Ok(stdout::print(&rendered.text)?)
-}
-
-/// An option that the chosen backend would not heed is refused rather than ignored.
-fn check_backend_options(arguments: &Arguments) -> Result<(), Failure> {
-    let unused = match arguments.backend {
-        Backend::Gpu => [("--samples", arguments.samples.is_some()), ("", false)],
-        Backend::Reference => [("--quality", arguments.quality.is_some()), ("--device", arguments.device.is_some())],
-    };
-    match unused.iter().find(|(_, given)| *given) {
-        Some((option, _)) => Err(Failure::Input(anyhow::anyhow!(
-            "{option} says nothing to the {} backend; leave it out or choose the other --backend",
-            arguments.backend.name()
-        ))),
-        None => Ok(()),
-    }
 }
 
 fn format_of(path: &Path) -> Result<Format, Failure> {
