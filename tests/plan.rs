@@ -130,6 +130,20 @@ fn what_depends_on_nothing_that_changed_is_reused_and_gives_the_same_picture() {
 }
 
 #[test]
+fn another_quadrature_is_another_result() {
+    let _alone = common::alone();
+    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
+    let mut renderer = Renderer::new(&request).unwrap();
+    let settings = Settings::of(Quality::Low);
+    renderer.render(&noon(), settings, PICTURE).unwrap();
+    let finer = Settings { nodes_per_leg: settings.nodes_per_leg + 1, ..settings };
+    let plan = renderer.render(&noon(), finer, PICTURE).unwrap().timings.plan;
+    for name in ["first_order", "higher_order", "sky_view", "compose"] {
+        assert_eq!(plan.decision(name), Some(Decision::Run), "{name}");
+    }
+}
+
+#[test]
 fn each_light_adds_its_own_sky() {
     let one = noon();
     let mut two = noon();

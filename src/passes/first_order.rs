@@ -35,7 +35,8 @@ pub(super) fn work(facts: &Facts) -> Work {
 /// What all of the multiply scattered field depends on besides optical depth.
 pub(super) fn inputs(facts: &Facts) -> Fingerprint {
     let settings = &facts.settings;
-    let sampling = (settings.directions, settings.degree_count, settings.multiple_scattering_size);
+    let quadrature = (settings.nodes_per_leg, settings.directions);
+    let sampling = (quadrature, settings.degree_count, settings.multiple_scattering_size);
     Fingerprint::of(&(facts.scene.planet.ground_albedo, settings.orders, sampling))
 }
 

@@ -53,7 +53,7 @@ pub struct Display {
 pub enum ToneMap {
     /// Clip at 1.
     None,
-    /// AgX-like filmic curve, which keeps hue towards white.
+    /// A filmic curve that keeps hue towards white; see `output::display`.
     Filmic,
 }
 
