@@ -15,8 +15,13 @@ const RAYS: &str = "label,altitude_m,view_zenith_deg,view_azimuth_deg,sun_zenith
                     up,500,30,0,60,0\nlow,500,80,90,85,10\n";
 
 fn welkin(folder: &Path, arguments: &str) -> Output {
+    welkin_with_cache(folder, arguments, Path::new(""))
+}
+
+/// Keeps compiled pipelines in a folder; an empty name keeps none.
+fn welkin_with_cache(folder: &Path, arguments: &str, cache: &Path) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_welkin"));
-    command.env("WELKIN_VALIDATION", "1");
+    command.env("WELKIN_VALIDATION", "1").env("WELKIN_CACHE", cache);
     command.current_dir(folder).args(arguments.split_whitespace()).output().unwrap()
 }
 
@@ -268,5 +273,29 @@ fn a_rendered_png_shows_the_radiance_of_the_exr() {
         // The device adds noise of less than one step and both round: less than two.
         assert!(steps_between_png_and_exr(&scene, 1.0) <= 2, "{tone_map}");
         assert!(steps_between_png_and_exr(&scene, 1.1) > 2, "{tone_map}: a tenth more light was not seen");
+    }
+}
+
+#[test]
+fn a_damaged_file_of_compiled_pipelines_is_said_and_made_anew() {
+    let folder = folder_with(&[("scene.toml", SCENE)]);
+    let cache = folder.path().join("cache");
+    let render = |picture: &str, cache: &Path| {
+        let output = welkin_with_cache(folder.path(), &format!("render scene.toml --quality low -o {picture}"), cache);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        stderr(&output)
+    };
+    let kept = || fs::read_dir(&cache).unwrap().map(|entry| entry.unwrap().path()).next().unwrap();
+    render("first.png", &cache);
+    let whole = fs::read(kept()).unwrap();
+    assert!(!render("second.png", &cache).contains("damaged"));
+    fs::write(kept(), &whole[..whole.len() - 1]).unwrap();
+    assert!(render("third.png", &cache).contains("is damaged: pipelines are compiled anew"));
+    assert_eq!(fs::read(kept()).unwrap(), whole, "the file was not mended");
+    // A file where the folder should be: a warning, and the picture all the same.
+    assert!(render("fourth.png", &folder.path().join("scene.toml")).contains("pipelines are not kept"));
+    let picture = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    for other in ["second.png", "third.png", "fourth.png"] {
+        assert_eq!(picture("first.png"), picture(other), "{other}");
     }
 }

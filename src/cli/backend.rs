@@ -1,6 +1,7 @@
 //! What computes light, and how it is opened.
 
 use std::env;
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use clap::ValueEnum;
@@ -44,6 +45,9 @@ impl Backend {
 /// When this environment variable is set, the validation layer watches, and a single message of it fails the command.
 const VALIDATION_VARIABLE: &str = "WELKIN_VALIDATION";
 
+/// Names a folder for compiled pipelines.
+const CACHE_VARIABLE: &str = "WELKIN_CACHE";
+
 static VALIDATION_LOG: OnceLock<ValidationLog> = OnceLock::new();
 
 /// Fails when the validation layer has had something to say, also while the device was closed.
@@ -60,7 +64,7 @@ pub fn check_validation() -> Result<(), Failure> {
 /// Opens a device by a part of its name or its index, else the best one, and says which.
 pub fn open_renderer(device: Option<&str>) -> Result<Renderer, Failure> {
     let validation = if env::var_os(VALIDATION_VARIABLE).is_some() { Validation::On } else { Validation::Off };
-    let request = DeviceRequest { device: device.map(str::to_owned), validation };
+    let request = DeviceRequest { device: device.map(str::to_owned), validation, pipeline_cache: pipeline_cache() };
     let renderer = Renderer::new(&request).map_err(failure)?;
     // Kept for `check_validation`; a command opens one device.
     let _ = VALIDATION_LOG.set(renderer.gpu().validation_log());
@@ -70,6 +74,15 @@ pub fn open_renderer(device: Option<&str>) -> Result<Renderer, Failure> {
         _ => eprintln!("device: {}", info.name),
     }
     Ok(renderer)
+}
+
+/// Where compiled pipelines are kept: the platform's place for what can be made again, unless the variable names another
+/// folder; an empty one keeps nothing.
+fn pipeline_cache() -> Option<PathBuf> {
+    match env::var_os(CACHE_VARIABLE) {
+        Some(folder) => (!folder.is_empty()).then(|| folder.into()),
+        None => directories::ProjectDirs::from("", "", "welkin").map(|places| places.cache_dir().to_owned()),
+    }
 }
 
 /// Tells a machine without Vulkan from an input that cannot be rendered.

@@ -5,6 +5,7 @@ mod compare;
 mod explain;
 mod failure;
 mod limit;
+mod log;
 mod merge;
 mod pass_table;
 mod phase_argument;
@@ -48,6 +49,7 @@ enum Command {
 
 /// Runs the program on the process's arguments.
 pub fn run() -> ExitCode {
+    log::show();
     let outcome = match Cli::parse().command {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),

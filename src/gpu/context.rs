@@ -1,5 +1,6 @@
 //! The open device with what every resource needs of it: queue, memory, names.
 
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use ash::{ext, vk};
@@ -9,6 +10,7 @@ use gpu_allocator::{AllocationSizes, MemoryLocation};
 use super::device::{Candidate, DeviceInfo};
 use super::error::{During, GpuError};
 use super::instance::Instance;
+use super::pipeline_cache::PipelineCache;
 
 const MEBIBYTE: u64 = 1 << 20;
 
@@ -21,6 +23,7 @@ pub(crate) struct Context {
     /// `None` only while the device is being destroyed.
     allocator: Mutex<Option<Allocator>>,
     debug: Option<ext::debug_utils::Device>,
+    pub(crate) pipeline_cache: PipelineCache,
     /// Label of the recording that is open.
     recording: Mutex<Option<String>>,
     pub(crate) physical_device: vk::PhysicalDevice,
@@ -29,13 +32,19 @@ pub(crate) struct Context {
 }
 
 impl Context {
-    pub(crate) fn new(instance: Instance, candidate: Candidate) -> Result<Self, GpuError> {
+    pub(crate) fn new(
+        instance: Instance,
+        candidate: Candidate,
+        pipeline_cache: Option<&Path>,
+    ) -> Result<Self, GpuError> {
         let device = create_device(&instance.raw, &candidate)?;
         let debug = instance.debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &device));
         // SAFETY: the device was created with one queue of this family.
         let queue = unsafe { device.get_device_queue(candidate.queue_family, 0) };
+        let pipeline_cache = PipelineCache::new(&device, &candidate, pipeline_cache)?;
         let context = Self {
             device,
+            pipeline_cache,
             info: candidate.info,
             queue_family: candidate.queue_family,
             queue: Mutex::new(queue),
@@ -146,6 +155,7 @@ impl Drop for Context {
         // SAFETY: no resource is left, as each keeps the context; the allocator's blocks go before the device.
         unsafe {
             let _ = self.device.device_wait_idle();
+            self.pipeline_cache.close(&self.device);
             drop(lock(&self.allocator).take());
             self.device.destroy_device(None);
         }

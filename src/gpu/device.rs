@@ -1,5 +1,7 @@
 //! Which device: what there is, what can be used, and which of them is taken.
 
+use std::path::PathBuf;
+
 use ash::vk;
 
 use super::error::{During, GpuError};
@@ -13,6 +15,8 @@ pub struct DeviceRequest {
     pub device: Option<String>,
     /// Whether the validation layer watches.
     pub validation: Validation,
+    /// A folder in which compiled pipelines are kept for the next run; without one they are not.
+    pub pipeline_cache: Option<PathBuf>,
 }
 
 /// The kinds of devices, the best first.
@@ -77,6 +81,8 @@ pub(crate) struct Candidate {
     pub(crate) queue_family: u32,
     /// Optional features that it has.
     pub(crate) extended_storage_formats: bool,
+    /// Tells devices and drivers apart whose compiled pipelines differ.
+    pub(crate) pipeline_cache_id: [u8; vk::UUID_SIZE],
     /// Why it cannot be used.
     unusable: Option<String>,
 }
@@ -148,7 +154,14 @@ fn candidate(instance: &ash::Instance, device: vk::PhysicalDevice) -> Candidate 
     };
     let features = unsafe { instance.get_physical_device_features(device) };
     let extended_storage_formats = features.shader_storage_image_extended_formats == vk::TRUE;
-    Candidate { raw: device, info, queue_family: queue.unwrap_or(0) as u32, extended_storage_formats, unusable }
+    Candidate {
+        raw: device,
+        info,
+        queue_family: queue.unwrap_or(0) as u32,
+        extended_storage_formats,
+        pipeline_cache_id: properties.pipeline_cache_uuid,
+        unusable,
+    }
 }
 
 fn text(name: Result<&std::ffi::CStr, std::ffi::FromBytesUntilNulError>) -> String {
@@ -194,7 +207,7 @@ mod tests {
         };
         let unusable = unusable.map(str::to_owned);
         let raw = vk::PhysicalDevice::null();
-        Candidate { raw, info, queue_family: 0, extended_storage_formats: true, unusable }
+        Candidate { raw, info, queue_family: 0, extended_storage_formats: true, pipeline_cache_id: [0; 16], unusable }
     }
 
     fn machine() -> Vec<Candidate> {

@@ -15,6 +15,7 @@ mod format;
 mod image;
 mod instance;
 mod pipeline;
+mod pipeline_cache;
 mod recorder;
 mod resource;
 mod sampler;
@@ -51,8 +52,7 @@ use sampler::SamplerInner;
 pub struct Gpu(Arc<Context>);
 
 impl Gpu {
-    /// Opens a device: the one that is asked for, else the best GPU, else a driver that computes on the CPU, which is
-    /// said in a warning.
+    /// Opens a device: the one that is asked for, else the best GPU, else a driver that computes on the CPU.
     ///
     /// # Errors
     /// When there is no loader, no device, no such device, none with Vulkan 1.3, or no validation layer where one is
@@ -63,9 +63,9 @@ impl Gpu {
         let info = &candidate.info;
         tracing::info!("device: {} ({} {})", info.name, info.driver, info.driver_version);
         if request.device.is_none() && !matches!(info.kind, DeviceKind::DiscreteGpu | DeviceKind::IntegratedGpu) {
-            tracing::warn!("no GPU found: {} computes on the CPU", info.name);
+            tracing::info!("no GPU found: {} computes on the CPU", info.name);
         }
-        Ok(Self(Arc::new(Context::new(instance, candidate)?)))
+        Ok(Self(Arc::new(Context::new(instance, candidate, request.pipeline_cache.as_deref())?)))
     }
 
     /// What the device says of itself.

@@ -132,8 +132,8 @@ fn compute_pipeline(context: &Context, shader: &Shader, layout: vk::PipelineLayo
     let stage =
         vk::PipelineShaderStageCreateInfo::default().stage(vk::ShaderStageFlags::COMPUTE).module(module).name(&entry);
     let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout);
-    // SAFETY: module, entry point and layout are of the same pass.
-    let pipelines = unsafe { device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
+    // SAFETY: module, entry point and layout are of the same pass. The driver guards the cache against other threads.
+    let pipelines = unsafe { device.create_compute_pipelines(context.pipeline_cache.raw, &[info], None) };
     // SAFETY: a pipeline needs its module only while it is made.
     unsafe { device.destroy_shader_module(module, None) };
     let pipelines = pipelines.map_err(|(_, result)| result).during("vkCreateComputePipelines")?;
