@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::frame::Frame;
 use crate::gpu::{Clock, DeviceRequest, Gpu};
 use crate::passes::{self, FRAME, Pass, Recording, RenderError, Resources, TABLES, record_probe};
-use crate::plan::{Decision, Facts, History, Outputs, Plan, Settings, Viewpoint};
+use crate::plan::{Decision, Facts, History, Outputs, Plan, Settings};
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Light, Scene};
 
@@ -96,9 +96,6 @@ impl Renderer {
         for group in groups_of_one_view(rays) {
             let seen_from = scene_for_ray(scene, &rays[group[0]]);
             let facts = Facts::new(&seen_from, settings, orders, Outputs::default())?;
-            if facts.viewpoint == Viewpoint::Underground {
-                continue;
-            }
             let group_rays: Vec<_> = group.iter().map(|&index| rays[index]).collect();
             passes::upload_rays(&mut self.resources, &group_rays, &facts.sky_view_mapping())?;
             self.execute("probe", &facts, &TABLES.iter().collect::<Vec<_>>(), group.len())?;
@@ -137,12 +134,6 @@ impl Renderer {
         let mut frame = Frame::new(camera.width, camera.height);
         let image = |name| self.resources.existing_image(name);
         let rgb = |texels: Vec<[f32; 4]>| texels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect::<Vec<_>>();
-        if facts.viewpoint == Viewpoint::Underground {
-            frame.transmittance.fill([0.0; 3]);
-            frame.distance_m.fill(0.0);
-            let black = vec![0; 3 * frame.radiance.len()];
-            return Ok((frame, facts.outputs.picture.then_some(black)));
-        }
         if let Some(radiance) = image("radiance_image") {
             frame.radiance = rgb(self.gpu().read_image(radiance)?);
         }

@@ -94,15 +94,16 @@ fn in_the_dark_nothing_scatters_but_the_air_still_weakens() {
 }
 
 #[test]
-fn below_the_ground_nothing_runs_and_the_picture_is_black() {
-    let mut scene = noon();
-    scene.camera.altitude_m = -10.0;
-    let plan = plan(&scene);
-    assert!(names(&plan, Decision::Run).is_empty());
-    assert!(reason(&plan, "compose").contains("below the ground"));
-    let rendered = &render(&[scene])[0];
-    assert!(rendered.frame.radiance.iter().all(|radiance| *radiance == [0.0; 3]));
-    assert_eq!(rendered.picture.as_ref().unwrap().iter().max(), Some(&0));
+fn from_below_the_ground_one_sees_what_one_sees_from_the_ground() {
+    let [mut ground, mut below] = [noon(), noon()];
+    ground.camera.altitude_m = 0.0;
+    below.camera.altitude_m = -10.0;
+    assert!(reason(&plan(&below), "sky_view").contains("10 m below the ground"));
+    let rendered = render(&[ground, below, noon()]);
+    assert_eq!(rendered[0].frame, rendered[1].frame);
+    assert_eq!(rendered[0].picture, rendered[1].picture);
+    // Negative control: two metres higher the ground looks different.
+    assert_ne!(rendered[0].frame, rendered[2].frame);
 }
 
 #[test]

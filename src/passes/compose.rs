@@ -2,7 +2,7 @@
 
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need, Viewpoint};
+use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
 const NAME: &str = "compose";
 
@@ -31,11 +31,6 @@ fn shape(facts: &Facts) -> ImageShape {
 }
 
 fn need(facts: &Facts) -> Need {
-    if facts.viewpoint == Viewpoint::Underground {
-        return Need::NotNeeded(
-            "the camera is below the ground, where no light comes: the picture is black".to_owned(),
-        );
-    }
     let camera = &facts.scene.camera;
     Need::Needed(format!("{} x {} pixels", camera.width, camera.height))
 }

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need, Viewpoint};
+use crate::plan::{Declaration, Facts, Fingerprint, Need};
 use crate::scene::ToneMap;
 
 const NAME: &str = "display";
@@ -35,11 +35,6 @@ fn shape(facts: &Facts) -> ImageShape {
 }
 
 fn need(facts: &Facts) -> Need {
-    if facts.viewpoint == Viewpoint::Underground {
-        return Need::NotNeeded(
-            "the camera is below the ground, where no light comes: the picture is black".to_owned(),
-        );
-    }
     if !facts.outputs.picture {
         return Need::NotNeeded("no 8-bit picture is asked for".to_owned());
     }

@@ -2,7 +2,7 @@
 
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need, Viewpoint};
+use crate::plan::{Declaration, Facts, Fingerprint, Need};
 use crate::probe::Orders;
 
 const NAME: &str = "first_order";
@@ -42,9 +42,6 @@ pub(super) fn inputs(facts: &Facts) -> Fingerprint {
 
 pub(super) fn need(facts: &Facts) -> Need {
     let not_needed = |reason: &str| Need::NotNeeded(reason.to_owned());
-    if facts.viewpoint == Viewpoint::Underground {
-        return not_needed("the camera is below the ground");
-    }
     if facts.lights.is_empty() {
         return not_needed("no directional light shines");
     }

@@ -2,7 +2,7 @@
 
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need, Viewpoint};
+use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
 const NAME: &str = "optical_depth";
 
@@ -30,9 +30,6 @@ fn shape(facts: &Facts) -> ImageShape {
 }
 
 fn need(facts: &Facts) -> Need {
-    if facts.viewpoint == Viewpoint::Underground {
-        return Need::NotNeeded(format!("the camera is {} m below the ground", -facts.scene.camera.altitude_m));
-    }
     if !facts.has_air() {
         return Need::NotNeeded("vacuum: no constituent absorbs or scatters".to_owned());
     }

@@ -17,12 +17,7 @@ pub const PASS: Pass = Pass {
             // Azimuths in the table count from the light, so only elevations matter.
             let elevations: Vec<_> = facts.lights.iter().map(|light| light.direction.elevation_rad).collect();
             let settings = &facts.settings;
-            Fingerprint::of(&(
-                elevations,
-                facts.scene.camera.altitude_m,
-                settings.nodes_per_leg,
-                settings.sky_view_size,
-            ))
+            Fingerprint::of(&(elevations, facts.observer_altitude_m(), settings.nodes_per_leg, settings.sky_view_size))
         },
         bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
     },
@@ -35,14 +30,15 @@ fn shape(facts: &Facts) -> ImageShape {
 }
 
 pub(super) fn need(facts: &Facts) -> Need {
-    if facts.viewpoint == Viewpoint::Underground {
-        return Need::NotNeeded("the camera is below the ground".to_owned());
-    }
     if !facts.has_air() {
         return Need::NotNeeded("vacuum: no constituent absorbs or scatters".to_owned());
     }
     let place = if facts.viewpoint == Viewpoint::InSpace { "from space" } else { "from within" };
-    Need::Needed(format!("the air is seen {place}, {} m above the ground", facts.scene.camera.altitude_m))
+    let altitude_m = facts.scene.camera.altitude_m;
+    if altitude_m < 0.0 {
+        return Need::Needed(format!("the camera is {} m below the ground: the air is seen from there", -altitude_m));
+    }
+    Need::Needed(format!("the air is seen {place}, {altitude_m} m above the ground"))
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {

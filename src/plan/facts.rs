@@ -19,9 +19,7 @@ pub struct Outputs {
 /// Where the camera stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Viewpoint {
-    /// Inside the planet, where no light comes.
-    Underground,
-    /// Between the ground and the top of the atmosphere.
+    /// Not above the top of the atmosphere.
     InAir,
     /// Above the top.
     InSpace,
@@ -86,7 +84,6 @@ impl<'a> Facts<'a> {
             constituents,
             lights: shining_lights(scene)?,
             viewpoint: match camera.altitude_m {
-                h if h < 0.0 => Viewpoint::Underground,
                 h if h <= scene.planet.atmosphere_height_m => Viewpoint::InAir,
                 _ => Viewpoint::InSpace,
             },
@@ -120,7 +117,12 @@ impl<'a> Facts<'a> {
 
     /// How the sky-view table sees the sphere of directions.
     pub fn sky_view_mapping(&self) -> SkyViewMapping {
-        SkyViewMapping::new(&self.scene.planet, self.scene.camera.altitude_m.max(0.0), self.settings.sky_view_size[1])
+        SkyViewMapping::new(&self.scene.planet, self.observer_altitude_m(), self.settings.sky_view_size[1])
+    }
+
+    /// Where the air is seen from, m: a camera below the ground sees what one sees from the ground.
+    pub fn observer_altitude_m(&self) -> f64 {
+        self.scene.camera.altitude_m.max(0.0)
     }
 }
 

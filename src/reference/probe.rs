@@ -47,7 +47,7 @@ pub fn direction(zenith_rad: f64, azimuth_rad: f64) -> DVec3 {
 
 fn trace(world: &World, ray: &Ray, orders: Orders, effort: Effort, seed: u64, stream: u64) -> RayRadiance {
     let world = world.with_sun(direction(ray.sun_zenith_rad, ray.sun_azimuth_rad));
-    let position = DVec3::new(0.0, 0.0, ray.altitude_m);
+    let position = DVec3::new(0.0, 0.0, ray.altitude_m.max(0.0));
     let toward = direction(ray.view_zenith_rad, ray.view_azimuth_rad);
     if orders == Orders::Single && world.lights.iter().all(single::is_covered) {
         let first = single::first_order(&world, position, toward, 1e-7);

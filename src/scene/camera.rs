@@ -7,7 +7,7 @@ use super::Direction;
 /// A pinhole camera on the vertical through the local frame's origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Height of the pinhole above the ground, m; negative is below ground.
+    /// Height of the pinhole above the ground, m; below the ground it sees what one sees from the ground.
     pub altitude_m: f64,
     /// Where the centre of the picture looks.
     pub direction: Direction,

@@ -60,7 +60,7 @@ fn wrapped_azimuth_rad(direction: DVec3) -> f64 {
 pub fn observer_block(facts: &Facts) -> Vec<u8> {
     let mapping = facts.sky_view_mapping();
     let header = ObserverHeader {
-        altitude_m: facts.scene.camera.altitude_m.max(0.0) as f32,
+        altitude_m: facts.observer_altitude_m() as f32,
         padding: [0.0; 3],
         view: SkyViewRangeBlock {
             horizon_rad: mapping.horizon_rad as f32,

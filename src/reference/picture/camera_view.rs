@@ -60,7 +60,7 @@ impl CameraView {
     }
 
     fn position(&self) -> DVec3 {
-        DVec3::new(0.0, 0.0, self.camera.altitude_m)
+        DVec3::new(0.0, 0.0, self.camera.altitude_m.max(0.0))
     }
 
     /// Through a point of a pixel, in pixels from its centre.
