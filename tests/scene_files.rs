@@ -355,3 +355,15 @@ proptest! {
         prop_assert_eq!(haze.scattering_per_m, scattering);
     }
 }
+
+#[test]
+fn airglow_is_switched_on_by_its_name_and_only_over_the_earth() {
+    let of = |preset: &str, changes: &str| parse(&format!("preset = \"{preset}\"\n{changes}\n{PRESET_AND_SUN}"));
+    assert!(!of("earth", "").unwrap().medium.constituents.iter().any(|constituent| constituent.emits()));
+    let glow = |changes: &str| of("hillaire2020", changes).unwrap().medium.constituents.pop().unwrap();
+    let (plain, twice) = (glow("[medium.airglow]"), glow("[medium.airglow]\ndensity_factor = 2"));
+    assert!(plain.name == "airglow" && plain.emits() && !plain.scatters());
+    assert_eq!(twice.emission_per_m, plain.emission_per_m.map(|emission| 2.0 * emission));
+    let mars = of("mars", "[medium.airglow]").unwrap_err().to_string();
+    assert!(mars.contains("medium.airglow") && mars.contains("missing field `profile`"), "{mars}");
+}

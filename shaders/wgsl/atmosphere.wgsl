@@ -61,19 +61,29 @@ struct Atmosphere {
 
 @group(0) @binding(0) var<uniform> atmosphere: Atmosphere;
 
-fn exponential_density(constituent: u32, altitude_m: f32) -> f32 {
-    return exp2(altitude_m * atmosphere.constituents[constituent].profile_a);
+// Relative density by the two numbers of a profile, as `Constituent` documents them.
+fn exponential_density(profile_a: f32, altitude_m: f32) -> f32 {
+    return exp2(altitude_m * profile_a);
 }
 
-fn tent_density(constituent: u32, altitude_m: f32) -> f32 {
-    let offset_m = altitude_m - atmosphere.constituents[constituent].profile_a;
-    return max(1.0 - abs(offset_m) * atmosphere.constituents[constituent].profile_b, 0.0);
+fn tent_density(profile_a: f32, profile_b: f32, altitude_m: f32) -> f32 {
+    return max(1.0 - abs(altitude_m - profile_a) * profile_b, 0.0);
 }
 
-fn layer_density(constituent: u32, altitude_m: f32) -> f32 {
-    let bottom_m = atmosphere.constituents[constituent].profile_a;
-    let top_m = atmosphere.constituents[constituent].profile_b;
-    return select(0.0, 1.0, altitude_m >= bottom_m && altitude_m <= top_m);
+fn layer_density(profile_a: f32, profile_b: f32, altitude_m: f32) -> f32 {
+    return select(0.0, 1.0, altitude_m >= profile_a && altitude_m <= profile_b);
+}
+
+fn exponential_constituent(i: u32, altitude_m: f32) -> f32 {
+    return exponential_density(atmosphere.constituents[i].profile_a, altitude_m);
+}
+
+fn tent_constituent(i: u32, altitude_m: f32) -> f32 {
+    return tent_density(atmosphere.constituents[i].profile_a, atmosphere.constituents[i].profile_b, altitude_m);
+}
+
+fn layer_constituent(i: u32, altitude_m: f32) -> f32 {
+    return layer_density(atmosphere.constituents[i].profile_a, atmosphere.constituents[i].profile_b, altitude_m);
 }
 
 // Relative density of each constituent at an altitude.
@@ -81,22 +91,22 @@ fn densities(altitude_m: f32) -> array<f32, CONSTITUENT_SLOTS> {
     let h = max(altitude_m, 0.0);
     var density: array<f32, CONSTITUENT_SLOTS>;
     for (var i = 0u; i < SCATTERING_EXPONENTIAL_END; i++) {
-        density[i] = exponential_density(i, h);
+        density[i] = exponential_constituent(i, h);
     }
     for (var i = SCATTERING_EXPONENTIAL_END; i < SCATTERING_TENT_END; i++) {
-        density[i] = tent_density(i, h);
+        density[i] = tent_constituent(i, h);
     }
     for (var i = SCATTERING_TENT_END; i < SCATTERER_COUNT; i++) {
-        density[i] = layer_density(i, h);
+        density[i] = layer_constituent(i, h);
     }
     for (var i = SCATTERER_COUNT; i < ABSORBING_EXPONENTIAL_END; i++) {
-        density[i] = exponential_density(i, h);
+        density[i] = exponential_constituent(i, h);
     }
     for (var i = ABSORBING_EXPONENTIAL_END; i < ABSORBING_TENT_END; i++) {
-        density[i] = tent_density(i, h);
+        density[i] = tent_constituent(i, h);
     }
     for (var i = ABSORBING_TENT_END; i < CONSTITUENT_COUNT; i++) {
-        density[i] = layer_density(i, h);
+        density[i] = layer_constituent(i, h);
     }
     return density;
 }

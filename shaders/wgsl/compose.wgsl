@@ -6,7 +6,7 @@
 #import welkin::camera::{camera, view_direction, pixel_angle_rad}
 #import welkin::march::view_ray
 #import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
-#import welkin::sky::{air_radiance, ground_radiance, view_transmittance, SkyDirection}
+#import welkin::sky::{air_radiance, emission_radiance, ground_radiance, view_transmittance, SkyDirection}
 
 @group(0) @binding(8) var radiance_image: texture_storage_2d<rgba32float, write>;
 #ifdef CAPTURE
@@ -59,7 +59,7 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
         return;
     }
     let view = view_direction(pixel.xy);
-    var radiance = vec3<f32>(0.0);
+    var radiance = emission_radiance(relative_to_light(view, 0u));
     let transmittance = view_transmittance(relative_to_light(view, 0u));
     for (var light = 0u; light < LIGHT_COUNT; light++) {
         let direction = relative_to_light(view, light);

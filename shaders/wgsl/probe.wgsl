@@ -1,7 +1,7 @@
 // Pass: radiance and transmittance along single rays, read from the very tables that a picture is made of.
 
 #import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
-#import welkin::sky::{air_radiance, ground_radiance, view_transmittance, SkyDirection}
+#import welkin::sky::{air_radiance, emission_radiance, ground_radiance, view_transmittance, SkyDirection}
 
 struct ProbeRay {
     zenith_rad: f32,
@@ -33,5 +33,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if direction.below_horizon {
         radiance += transmittance * ground_radiance(0u, direction);
     }
-    answers[id.x] = ProbeAnswer(observer.lights[0].irradiance * radiance, transmittance);
+    answers[id.x] = ProbeAnswer(observer.lights[0].irradiance * radiance + emission_radiance(direction), transmittance);
 }

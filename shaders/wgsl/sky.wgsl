@@ -4,7 +4,8 @@
 // The table's layers, for each light and each half of the view sphere: the logarithms of multiply scattered radiance,
 // then of each scatterer's single scattering without the phase function. All for unit irradiance of the light.
 //
-// Definitions: AIR (there is any), GROUND (light from the ground belongs in the picture), MULTIPLE_SCATTERING.
+// Definitions: AIR (there is any), LIT (a directional light shines on air that scatters), GROUND (light from the ground
+// belongs in the picture), MULTIPLE_SCATTERING, EMISSION (the air gives off light of its own).
 
 #import welkin::atmosphere::{atmosphere, phase_per_sr, PI, SCATTERER_COUNT}
 #import welkin::mapping
@@ -15,6 +16,9 @@
 @group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
 @group(0) @binding(7) var sky_view_table: texture_2d_array<f32>;
 @group(0) @binding(14) var view_optical_depth_table: texture_2d<f32>;
+#ifdef EMISSION
+@group(0) @binding(15) var view_emission_table: texture_2d<f32>;
+#endif
 
 const MULTIPLE_LAYER: u32 = 0u;
 const SINGLE_LAYER: u32 = 1u;
@@ -35,12 +39,16 @@ struct SkyDirection {
     below_horizon: bool,
 }
 
+// Where a direction lies in a table that has a column for each half of the view sphere.
+fn view_row_uv(direction: SkyDirection, size: vec2<f32>) -> vec2<f32> {
+    let unit = mapping::sky_view_to_unit(direction.zenith_rad, 0.0, direction.below_horizon, observer.view);
+    return mapping::inset(vec2<f32>(f32(direction.below_horizon), unit.y), size);
+}
+
 // Transmittance of the air to the ground or to space.
 fn view_transmittance(direction: SkyDirection) -> vec3<f32> {
 #ifdef AIR
-    let unit = mapping::sky_view_to_unit(direction.zenith_rad, 0.0, direction.below_horizon, observer.view);
-    let half_sphere = vec2<f32>(f32(direction.below_horizon), unit.y);
-    let uv = mapping::inset(half_sphere, vec2<f32>(textureDimensions(view_optical_depth_table)));
+    let uv = view_row_uv(direction, vec2<f32>(textureDimensions(view_optical_depth_table)));
     return exp(-textureSampleLevel(view_optical_depth_table, table_sampler, uv, 0.0).rgb);
 #else
     return vec3<f32>(1.0);
@@ -50,7 +58,7 @@ fn view_transmittance(direction: SkyDirection) -> vec3<f32> {
 // Radiance of the air along the ray, 1/sr: per unit irradiance of the light.
 fn air_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
     var radiance = vec3<f32>(0.0);
-#ifdef AIR
+#ifdef LIT
     let unit = mapping::sky_view_to_unit(
         direction.zenith_rad, direction.azimuth_rad, direction.below_horizon, observer.view
     );
@@ -80,4 +88,14 @@ fn ground_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
     radiance = atmosphere.ground_albedo / PI * irradiance;
 #endif
     return radiance;
+}
+
+// Radiance that no directional light causes: the air's own, on its way to the observer and from the ground, W/m2/sr/nm.
+fn emission_radiance(direction: SkyDirection) -> vec3<f32> {
+#ifdef EMISSION
+    let uv = view_row_uv(direction, vec2<f32>(textureDimensions(view_emission_table)));
+    return textureSampleLevel(view_emission_table, table_sampler, uv, 0.0).rgb;
+#else
+    return vec3<f32>(0.0);
+#endif
 }

@@ -11,7 +11,13 @@ pub const PASS: Pass = Pass {
     declaration: Declaration {
         name: NAME,
         need,
-        reads: &["optical_depth_table", "multiple_scattering_table", "view_optical_depth_table", "sky_view_table"],
+        reads: &[
+            "optical_depth_table",
+            "multiple_scattering_table",
+            "view_optical_depth_table",
+            "sky_view_table",
+            "view_emission_table",
+        ],
         writes: &["radiance_image", "transmittance_image", "distance_image"],
         inputs: |facts| {
             let scene = facts.scene;

@@ -2,7 +2,7 @@
 
 use welkin_shaders::{Definition, Definitions};
 
-use super::blocks::lobe_count;
+use super::blocks::{ZONAL_COUNT, emission_breakpoints_m, lobe_count};
 use crate::plan::Facts;
 use crate::probe::Orders;
 
@@ -19,6 +19,11 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("SCATTERER_COUNT", groups.scatterer_count),
         ("ABSORBING_EXPONENTIAL_END", groups.absorbing_exponential_end),
         ("ABSORBING_TENT_END", groups.absorbing_tent_end),
+        ("EMITTER_COUNT", facts.emitters_up_to(2)),
+        ("EMITTING_EXPONENTIAL_END", facts.emitters_up_to(0)),
+        ("EMITTING_TENT_END", facts.emitters_up_to(1)),
+        ("ZONAL_COUNT", ZONAL_COUNT),
+        ("BREAKPOINT_COUNT", emission_breakpoints_m(facts).len() as u32),
         ("LOBE_COUNT", lobe_count(facts)),
         ("LIGHT_COUNT", facts.light_slots()),
         ("NODE_COUNT", settings.nodes_per_leg),
@@ -28,10 +33,13 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("BAND_COUNT", directions.band),
         ("ABOVE_COUNT", directions.above),
         ("AZIMUTH_COUNT", directions.azimuths),
+        ("COSINE_COUNT", directions.below + directions.band + directions.above),
         ("INVOCATION_COUNT", directions.count().min(MAX_INVOCATIONS)),
     ];
     let flags = [
         ("AIR", facts.has_air()),
+        ("LIT", facts.is_lit()),
+        ("EMISSION", !facts.emitters.is_empty()),
         ("GROUND", facts.orders == Orders::All),
         ("MULTIPLE_SCATTERING", facts.has_multiple_scattering()),
         ("CAPTURE", facts.outputs.capture),

@@ -7,6 +7,7 @@ pub mod blocks;
 mod compose;
 mod definitions;
 mod display;
+mod emission_order;
 mod first_order;
 mod higher_order;
 mod optical_depth;
@@ -14,6 +15,7 @@ mod probe;
 mod recording;
 mod resources;
 mod sky_view;
+mod view_emission;
 mod view_optical_depth;
 
 pub use definitions::definitions;
@@ -34,8 +36,15 @@ pub struct Pass {
 }
 
 /// The tables that the sky is read from, in order.
-pub const TABLES: [Pass; 5] =
-    [optical_depth::PASS, first_order::PASS, higher_order::PASS, view_optical_depth::PASS, sky_view::PASS];
+pub const TABLES: [Pass; 7] = [
+    optical_depth::PASS,
+    first_order::PASS,
+    higher_order::PASS,
+    emission_order::PASS,
+    view_optical_depth::PASS,
+    sky_view::PASS,
+    view_emission::PASS,
+];
 
 /// What makes a frame of them, in order.
 pub const FRAME: [Pass; 2] = [compose::PASS, display::PASS];

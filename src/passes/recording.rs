@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use welkin_shaders::{Definition, Definitions};
 
-use super::blocks::{CameraBlock, atmosphere_block, cosine_nodes, gauss_nodes, legendre_moments, observer_block};
+use super::blocks::{
+    CameraBlock, ZONAL_COUNT, atmosphere_block, cosine_nodes, emission_block, gauss_nodes, legendre_moments,
+    observer_block,
+};
 use super::{RenderError, Resources, definitions};
 use crate::gpu::{Commands, GpuImage, Resource, Work};
 use crate::plan::Facts;
@@ -18,6 +21,7 @@ impl Parameters {
         let bytes = |slice: &[_]| bytemuck::cast_slice(slice).to_vec();
         Self(BTreeMap::from([
             ("atmosphere", atmosphere_block(facts)),
+            ("emission", emission_block(facts)),
             ("gauss_nodes", bytes(&gauss_nodes(&facts.settings))),
             ("cosine_nodes", bytes(&cosine_nodes(&facts.settings))),
             ("observer", observer_block(facts)),
@@ -45,8 +49,11 @@ pub struct Recording<'a> {
 impl<'a> Recording<'a> {
     /// Starts a frame whose dispatches are timed.
     pub fn new(label: &str, facts: &'a Facts<'a>, resources: &'a mut Resources) -> Result<Self, RenderError> {
-        // The one storage buffer among the parameters must be filled before recording starts.
-        resources.fill_buffer("legendre_moments", &legendre_moments(facts))?;
+        // Storage buffers among the parameters must be filled before recording starts.
+        resources.fill_buffer("legendre_moments", &legendre_moments(facts, facts.settings.degree_count))?;
+        if !facts.emitters.is_empty() {
+            resources.fill_buffer("zonal_moments", &legendre_moments(facts, ZONAL_COUNT))?;
+        }
         let commands = resources.gpu.record_timed(label)?;
         Ok(Self { facts, resources, parameters: Parameters::new(facts), definitions: definitions(facts), commands })
     }

@@ -1,8 +1,8 @@
 //! The integrals that the sky seen from the camera's altitude is made of, for every direction and light.
 
-use super::{Pass, Recording, RenderError};
+use super::{Pass, Recording, RenderError, view_optical_depth};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need, Viewpoint};
+use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
 const NAME: &str = "sky_view";
 
@@ -29,16 +29,17 @@ fn shape(facts: &Facts) -> ImageShape {
     ImageShape::D2Array(width, height, facts.sky_view_layers())
 }
 
-pub(super) fn need(facts: &Facts) -> Need {
-    if !facts.has_air() {
-        return Need::NotNeeded("vacuum: no constituent absorbs or scatters".to_owned());
+fn need(facts: &Facts) -> Need {
+    if let Need::NotNeeded(reason) = view_optical_depth::need(facts) {
+        return Need::NotNeeded(reason);
     }
-    let place = if facts.viewpoint == Viewpoint::InSpace { "from space" } else { "from within" };
-    let altitude_m = facts.scene.camera.altitude_m;
-    if altitude_m < 0.0 {
-        return Need::Needed(format!("the camera is {} m below the ground: the air is seen from there", -altitude_m));
+    if facts.lights.is_empty() {
+        return Need::NotNeeded("no directional light shines".to_owned());
     }
-    Need::Needed(format!("the air is seen {place}, {altitude_m} m above the ground"))
+    if facts.scatterers().is_empty() {
+        return Need::NotNeeded("no constituent scatters".to_owned());
+    }
+    Need::Needed(view_optical_depth::seen_from(facts))
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {

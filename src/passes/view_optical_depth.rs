@@ -1,9 +1,8 @@
 //! Optical depth of the air along every view ray from the camera's altitude.
 
-use super::sky_view::need;
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint};
+use crate::plan::{Declaration, Facts, Fingerprint, Need, Viewpoint};
 
 const NAME: &str = "view_optical_depth";
 
@@ -25,8 +24,25 @@ pub const PASS: Pass = Pass {
 };
 
 /// Two columns, for the sky's half and the ground's. Every row of the sky view is one of its rows.
-fn shape(facts: &Facts) -> ImageShape {
+pub(super) fn shape(facts: &Facts) -> ImageShape {
     ImageShape::D2(2, ROWS_PER_SKY_VIEW_ROW * (facts.settings.sky_view_size[1] - 1) + 1)
+}
+
+pub(super) fn need(facts: &Facts) -> Need {
+    if !facts.has_air() {
+        return Need::NotNeeded("vacuum: no constituent absorbs or scatters".to_owned());
+    }
+    Need::Needed(seen_from(facts))
+}
+
+/// Where the air is seen from, in words.
+pub(super) fn seen_from(facts: &Facts) -> String {
+    let place = if facts.viewpoint == Viewpoint::InSpace { "from space" } else { "from within" };
+    let altitude_m = facts.scene.camera.altitude_m;
+    if altitude_m < 0.0 {
+        return format!("the camera is {} m below the ground: the air is seen from there", -altitude_m);
+    }
+    format!("the air is seen {place}, {altitude_m} m above the ground")
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {

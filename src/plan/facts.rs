@@ -1,7 +1,7 @@
 //! What the plan and the passes know about a scene, sorted the way the shaders want it.
 
 use welkin_lut::mapping::SkyViewMapping;
-use welkin_lut::{BAND_NAMES, Constituent, DensityProfile, PhaseFunction};
+use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::{PlanError, Settings};
 use crate::probe::Orders;
@@ -57,6 +57,8 @@ pub struct Facts<'a> {
     pub constituents: Vec<&'a Constituent>,
     /// The groups of that order.
     pub groups: ConstituentGroups,
+    /// Constituents that give off light, by profile as above.
+    pub emitters: Vec<&'a Constituent>,
     /// Directional lights that shine.
     pub lights: Vec<&'a DirectionalLight>,
     /// Where the camera stands.
@@ -69,11 +71,13 @@ impl<'a> Facts<'a> {
     /// # Errors
     /// [`PlanError::Unsupported`] for what the real-time renderer cannot do yet but the reference can.
     pub fn new(scene: &'a Scene, settings: Settings, orders: Orders, outputs: Outputs) -> Result<Self, PlanError> {
-        let mut constituents: Vec<_> = scene.medium.constituents.iter().filter(|c| acts_on_light(c)).collect();
+        let mut constituents: Vec<_> = scene.medium.constituents.iter().filter(|c| weakens_light(c)).collect();
         constituents.sort_by_key(|constituent| group_of(constituent));
         for constituent in &constituents {
             check_supported(constituent)?;
         }
+        let mut emitters: Vec<_> = scene.medium.constituents.iter().filter(|c| c.emits()).collect();
+        emitters.sort_by_key(|emitter| profile_rank(&emitter.profile));
         let camera = &scene.camera;
         Ok(Self {
             scene,
@@ -82,6 +86,7 @@ impl<'a> Facts<'a> {
             outputs,
             groups: groups(&constituents),
             constituents,
+            emitters,
             lights: shining_lights(scene)?,
             viewpoint: match camera.altitude_m {
                 h if h <= scene.planet.atmosphere_height_m => Viewpoint::InAir,
@@ -95,14 +100,24 @@ impl<'a> Facts<'a> {
         !self.constituents.is_empty()
     }
 
+    /// How many emitters have a profile of this rank or one before it: exponential 0, tent 1, layer 2.
+    pub fn emitters_up_to(&self, rank: u8) -> u32 {
+        self.emitters.partition_point(|emitter| profile_rank(&emitter.profile) <= rank) as u32
+    }
+
     /// Constituents that scatter.
     pub fn scatterers(&self) -> &[&'a Constituent] {
         &self.constituents[..self.groups.scatterer_count as usize]
     }
 
+    /// Whether a directional light shines on air that scatters.
+    pub fn is_lit(&self) -> bool {
+        !self.scatterers().is_empty() && !self.lights.is_empty()
+    }
+
     /// Whether light of the second and later orders, and the ground's, belongs in the picture.
     pub fn has_multiple_scattering(&self) -> bool {
-        self.orders == Orders::All && !self.scatterers().is_empty() && !self.lights.is_empty()
+        self.orders == Orders::All && self.is_lit()
     }
 
     /// Lights that the shaders loop over; a dark scene keeps one slot.
@@ -126,18 +141,22 @@ impl<'a> Facts<'a> {
     }
 }
 
-fn acts_on_light(constituent: &Constituent) -> bool {
-    constituent.extinction_per_m().iter().any(|&c| c > 0.0) || constituent.emits()
+fn weakens_light(constituent: &Constituent) -> bool {
+    constituent.extinction_per_m().iter().any(|&c| c > 0.0)
+}
+
+/// The shaders' order of profiles.
+fn profile_rank(profile: &DensityProfile) -> u8 {
+    match profile {
+        DensityProfile::Exponential { .. } => 0,
+        DensityProfile::Tent { .. } => 1,
+        DensityProfile::Layer { .. } => 2,
+    }
 }
 
 /// Sort key: scattering before absorbing, then by profile.
 fn group_of(constituent: &Constituent) -> (bool, u8) {
-    let profile = match constituent.profile {
-        DensityProfile::Exponential { .. } => 0,
-        DensityProfile::Tent { .. } => 1,
-        DensityProfile::Layer { .. } => 2,
-    };
-    (!constituent.scatters(), profile)
+    (!constituent.scatters(), profile_rank(&constituent.profile))
 }
 
 fn groups(sorted: &[&Constituent]) -> ConstituentGroups {
@@ -155,9 +174,6 @@ fn groups(sorted: &[&Constituent]) -> ConstituentGroups {
 fn check_supported(constituent: &Constituent) -> Result<(), PlanError> {
     let unsupported =
         |what: &str| Err(PlanError::Unsupported { what: format!("constituent '{}' {what}", constituent.name) });
-    if let Some(band) = constituent.emission_per_m.iter().position(|&e| e > 0.0) {
-        return unsupported(&format!("emits light in band {}", BAND_NAMES[band]));
-    }
     if constituent.scatters() && matches!(constituent.phase, PhaseFunction::Tabulated(_)) {
         return unsupported("has a tabulated phase function");
     }

@@ -49,7 +49,7 @@ fn trace(world: &World, ray: &Ray, orders: Orders, effort: Effort, seed: u64, st
     let world = world.with_sun(direction(ray.sun_zenith_rad, ray.sun_azimuth_rad));
     let position = DVec3::new(0.0, 0.0, ray.altitude_m.max(0.0));
     let toward = direction(ray.view_zenith_rad, ray.view_azimuth_rad);
-    if orders == Orders::Single && world.lights.iter().all(single::is_covered) {
+    if orders == Orders::Single && world.lights.iter().all(single::is_covered) && !single::emits(&world) {
         let first = single::first_order(&world, position, toward, 1e-7);
         return RayRadiance {
             radiance: first.single.value,

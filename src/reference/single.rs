@@ -31,6 +31,11 @@ pub fn is_covered(light: &Emitter) -> bool {
     matches!(light, Emitter::Beam { .. } | Emitter::Point { .. })
 }
 
+/// Whether matter gives off light of its own.
+pub fn emits(world: &World) -> bool {
+    world.air.emits() || world.bodies.iter().any(|body| body.matter[0].emission_per_m != spectrum::ZERO)
+}
+
 /// Everything up to the first event for the ray from `p` along the unit vector `d`, to a relative error.
 pub fn first_order(world: &World, p: DVec3, d: DVec3, relative_error: f64) -> FirstOrder {
     let mut result = FirstOrder { transmittance: spectrum::ONE, ..FirstOrder::default() };
@@ -39,7 +44,7 @@ pub fn first_order(world: &World, p: DVec3, d: DVec3, relative_error: f64) -> Fi
         let cuts = lit_breakpoints(world, p, d, span);
         result.single = integrate(|t| source(world, p, d, span, t), &cuts, relative_error, 0.0);
         result.transmittance = spectrum::attenuation(depth_between(world, p, d, span.start_m, span.end_m));
-        if world.air.emits() || world.bodies.iter().any(|b| b.matter[0].emission_per_m != spectrum::ZERO) {
+        if emits(world) {
             let emitted = integrate(|t| emission(world, p, d, span, t), &cuts, relative_error, 0.0);
             result.unscattered = emitted.value;
         }

@@ -50,9 +50,13 @@ fn change(preset: Preset, changes: &BTreeMap<String, ConstituentChange>, directo
     for (name, file) in changes {
         let path = format!("medium.{name}");
         let change = Change { path: &path, file, directory };
-        match medium.constituents.iter_mut().find(|constituent| constituent.name == *name) {
-            Some(constituent) => change.apply(constituent)?,
-            None => medium.constituents.push(change.make(name, &note)?),
+        if let Some(constituent) = medium.constituents.iter_mut().find(|constituent| constituent.name == *name) {
+            change.apply(constituent)?;
+        } else if let Some(mut constituent) = preset.optional().into_iter().find(|optional| optional.name == *name) {
+            change.apply(&mut constituent)?;
+            medium.constituents.push(constituent);
+        } else {
+            medium.constituents.push(change.make(name, &note)?);
         }
     }
     // A constituent that neither takes nor gives light would only cost time.

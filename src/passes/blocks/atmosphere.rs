@@ -100,7 +100,7 @@ pub fn lobe_count(facts: &Facts) -> u32 {
 }
 
 /// The two numbers of a density profile, as WGSL `Constituent` documents them.
-fn profile(profile: &DensityProfile) -> (f32, f32) {
+pub(super) fn profile(profile: &DensityProfile) -> (f32, f32) {
     match *profile {
         DensityProfile::Exponential { scale_height_m } => {
             ((-1.0 / (scale_height_m * std::f64::consts::LN_2)) as f32, 0.0)
@@ -144,8 +144,8 @@ pub fn atmosphere_block(facts: &Facts) -> Vec<u8> {
 }
 
 /// χ_l of each scatterer, row by row; one zero when there is none.
-pub fn legendre_moments(facts: &Facts) -> Vec<f32> {
-    let degrees = facts.settings.degree_count as usize;
+pub fn legendre_moments(facts: &Facts, degree_count: u32) -> Vec<f32> {
+    let degrees = degree_count as usize;
     let moments = |c: &&Constituent| (0..degrees).map(|l| c.phase.legendre_moment(l) as f32).collect::<Vec<_>>();
     let mut all: Vec<f32> = facts.scatterers().iter().flat_map(moments).collect();
     all.resize(all.len().max(degrees), 0.0);

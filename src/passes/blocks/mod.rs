@@ -2,11 +2,13 @@
 
 mod atmosphere;
 mod camera;
+mod emission;
 mod observer;
 mod quadrature;
 
 pub use atmosphere::{atmosphere_block, legendre_moments, lobe_count};
 pub use camera::CameraBlock;
+pub use emission::{ZONAL_COUNT, emission_block, emission_breakpoints_m};
 pub use observer::observer_block;
 pub use quadrature::{GaussNodeBlock, cosine_nodes, gauss_nodes};
 
@@ -20,6 +22,7 @@ fn vec3(bands: Bands) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::atmosphere::{AtmosphereHeader, ConstituentBlock, PhaseLobeBlock};
+    use super::emission::EmitterBlock;
     use super::observer::{DirectionalLightBlock, ObserverHeader, SkyViewRangeBlock};
     use super::*;
     use crate::passes::definitions;
@@ -77,6 +80,9 @@ mod tests {
             [scattering_per_m, profile_a, extinction_per_m, profile_b, lobes]
         );
         assert_eq!(size(&compose, "Constituent"), size_of::<ConstituentBlock>());
+        let emission = shader("view_emission");
+        assert_layout!(emission, "Emitter", EmitterBlock, [emission_per_m, profile_a, profile_b]);
+        assert_eq!(size(&emission, "Emitter"), size_of::<EmitterBlock>());
         let gauss = shader("first_order");
         assert_layout!(gauss, "GaussNode", GaussNodeBlock, [abscissa, weight]);
         assert_eq!(size(&gauss, "GaussNode"), size_of::<GaussNodeBlock>());

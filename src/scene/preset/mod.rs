@@ -1,5 +1,6 @@
 //! Planets with their air and sun, by name.
 
+mod airglow;
 mod earth;
 mod hillaire2020;
 mod mars;
@@ -66,6 +67,14 @@ impl Preset {
         }
     }
 
+    /// Constituents that a scene file can add by their name alone.
+    pub fn optional(self) -> Vec<Constituent> {
+        match self {
+            Self::Earth | Self::Hillaire2020 => vec![airglow::airglow()],
+            Self::Mars => vec![],
+        }
+    }
+
     /// The sun.
     pub fn sun(self) -> PresetSun {
         match self {
@@ -121,6 +130,7 @@ mod tests {
         for preset in [Preset::Earth, Preset::Hillaire2020, Preset::Mars] {
             preset.planet().validate().unwrap();
             preset.medium().validate().unwrap();
+            preset.optional().iter().for_each(|constituent| constituent.validate().unwrap());
         }
     }
 }
