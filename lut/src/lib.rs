@@ -9,6 +9,7 @@
 #![forbid(unsafe_code)]
 
 mod bands;
+pub mod cloud;
 pub mod geometry;
 pub mod mapping;
 mod medium;
