@@ -78,6 +78,9 @@ impl<'a> Facts<'a> {
         }
         let mut emitters: Vec<_> = scene.medium.constituents.iter().filter(|c| c.emits()).collect();
         emitters.sort_by_key(|emitter| profile_rank(&emitter.profile));
+        if let Some(layer) = scene.clouds.iter().find(|layer| !layer.is_empty()) {
+            return Err(PlanError::Unsupported { what: format!("the scene has clouds ('{}')", layer.name) });
+        }
         let camera = &scene.camera;
         Ok(Self {
             scene,

@@ -8,6 +8,7 @@
 
 mod air;
 pub mod attenuation;
+mod clouds;
 mod column;
 mod field;
 mod first_event;

@@ -1,5 +1,7 @@
 //! Optical depth and what follows from it, along rays, without sampling.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use welkin_lut::Bands;
 
@@ -55,9 +57,17 @@ pub fn optical_depth(world: &World, p: DVec3, d: DVec3, distance_m: f64, relativ
     integrate(|t| extinction(world, p, d, t), &cuts, relative_error, 1e-300)
 }
 
-/// T = exp(-τ) to space or to the ground (Premože 2003, eq. 14), by adaptive quadrature to 10⁻¹⁰ of τ.
+/// T = exp(-τ) to space or to the ground (Premože 2003, eq. 14): of stratified air by adaptive quadrature to 10⁻¹⁰ of
+/// τ, of bodies by steps that follow their detail.
 pub fn transmittance(world: &World, p: DVec3, d: DVec3) -> Bands {
-    spectrum::attenuation(optical_depth(world, p, d, f64::INFINITY, 1e-10).value)
+    let stratified = World { bodies: Arc::new([]), ..world.clone() };
+    let mut depth = optical_depth(&stratified, p, d, f64::INFINITY, 1e-10).value;
+    if let Some(span) = world.shape.span(p, d) {
+        for body in world.bodies.iter() {
+            spectrum::accumulate(&mut depth, 1.0, body.optical_depth(p, d, span.start_m, span.end_m));
+        }
+    }
+    spectrum::attenuation(depth)
 }
 
 /// α = 1 - T (Premože 2003, eq. 15), without cancellation in thin matter.

@@ -6,6 +6,7 @@ use glam::DVec3;
 use welkin_lut::{Bands, Constituent};
 
 use super::air::{Air, Tentative};
+use super::clouds::CloudShell;
 use super::field::Body;
 use super::light::Emitter;
 use super::random::Draw;
@@ -44,11 +45,13 @@ impl World {
         Self { shape, ground_albedo, air, bodies: Arc::new([]), lights: Vec::new() }
     }
 
-    /// The scene's planet, medium and lights; the origin is the ground point below the camera.
+    /// The scene's planet, medium, clouds and lights; the origin is the ground point below the camera.
     pub fn from_scene(scene: &Scene) -> Self {
         let planet = &scene.planet;
         let shape = Shape::Sphere { radius_m: planet.radius_m, height_m: planet.atmosphere_height_m };
         let mut world = Self::stratified(shape, planet.ground_albedo, &scene.medium.constituents);
+        let body = |layer| CloudShell::body(layer, planet.radius_m, scene.time_s);
+        world.bodies = scene.clouds.iter().filter_map(body).collect();
         world.lights = scene.lights.iter().map(Emitter::new).collect();
         world
     }

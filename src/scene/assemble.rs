@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 use welkin_lut::Planet;
 
+use super::clouds::assemble_clouds;
 use super::file::{CameraFile, DisplayFile, LightsFile, PlanetFile, SceneFile, SunFile, ToneMapFile, WhenFile};
 use super::medium::assemble_medium;
 use super::sun_position::sun_direction;
@@ -21,6 +22,9 @@ pub fn assemble(file: &SceneFile, path: &Path) -> Result<Scene, Problem> {
     let planet = assemble_planet(&file.planet, file.preset);
     planet.validate().map_err(|error| Problem::new("planet", error.to_string()))?;
     let medium = assemble_medium(file.medium.as_ref(), file.preset, path.parent().unwrap_or(Path::new("")))?;
+    let directory = path.parent().unwrap_or(Path::new(""));
+    let clouds = assemble_clouds(&file.clouds, planet.atmosphere_height_m, directory)?;
+    let time_s = file.time_s.map_or(0.0, |time| time.get());
     let mut lights = vec![Light::Directional(assemble_sun(&file.sun, file.preset)?)];
     add_lights(&file.light, &mut lights)?;
     let camera = assemble_camera(&file.camera);
@@ -31,7 +35,7 @@ pub fn assemble(file: &SceneFile, path: &Path) -> Result<Scene, Problem> {
     }
     let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let name = file.name.clone().unwrap_or_else(stem);
-    Ok(Scene { name, planet, medium, lights, camera, display: assemble_display(&file.display) })
+    Ok(Scene { name, planet, medium, clouds, time_s, lights, camera, display: assemble_display(&file.display) })
 }
 
 fn assemble_planet(file: &PlanetFile, preset: Preset) -> Planet {

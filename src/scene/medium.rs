@@ -108,7 +108,7 @@ impl Change<'_> {
             constituent.profile = self.profile(profile)?;
         }
         if let Some(phase) = &self.file.phase {
-            constituent.phase = self.phase(phase)?;
+            constituent.phase = assemble_phase(phase, self.path, self.directory)?;
         }
         Ok(())
     }
@@ -131,31 +131,32 @@ impl Change<'_> {
             }
         })
     }
+}
 
-    fn phase(&self, file: &PhaseFile) -> Result<PhaseFunction, Problem> {
-        Ok(match file {
-            PhaseFile::Isotropic => PhaseFunction::Isotropic,
-            PhaseFile::Rayleigh => PhaseFunction::Rayleigh,
-            PhaseFile::HenyeyGreenstein { g } => PhaseFunction::HenyeyGreenstein { g: g.get() },
-            PhaseFile::DoubleHenyeyGreenstein { weight, g1, g2 } => {
-                PhaseFunction::DoubleHenyeyGreenstein { weight: weight.get(), g1: g1.get(), g2: g2.get() }
-            }
-            PhaseFile::Schlick { k } => PhaseFunction::Schlick { k: k.get() },
-            PhaseFile::CornetteShanks { g } => PhaseFunction::CornetteShanks { g: g.get() },
-            PhaseFile::Draine { g, alpha } => PhaseFunction::Draine { g: g.get(), alpha: alpha.get() },
-            PhaseFile::HenyeyGreensteinDraine { droplet_diameter_um } => {
-                PhaseFunction::HenyeyGreensteinDraine { droplet_diameter_um: droplet_diameter_um.get() }
-            }
-            PhaseFile::Table { file } => PhaseFunction::Tabulated(Arc::new(self.table(file)?)),
-        })
-    }
+/// The phase function of what stands at `path`; `directory` is where tables are looked for.
+pub fn assemble_phase(file: &PhaseFile, path: &str, directory: &Path) -> Result<PhaseFunction, Problem> {
+    Ok(match file {
+        PhaseFile::Isotropic => PhaseFunction::Isotropic,
+        PhaseFile::Rayleigh => PhaseFunction::Rayleigh,
+        PhaseFile::HenyeyGreenstein { g } => PhaseFunction::HenyeyGreenstein { g: g.get() },
+        PhaseFile::DoubleHenyeyGreenstein { weight, g1, g2 } => {
+            PhaseFunction::DoubleHenyeyGreenstein { weight: weight.get(), g1: g1.get(), g2: g2.get() }
+        }
+        PhaseFile::Schlick { k } => PhaseFunction::Schlick { k: k.get() },
+        PhaseFile::CornetteShanks { g } => PhaseFunction::CornetteShanks { g: g.get() },
+        PhaseFile::Draine { g, alpha } => PhaseFunction::Draine { g: g.get(), alpha: alpha.get() },
+        PhaseFile::HenyeyGreensteinDraine { droplet_diameter_um } => {
+            PhaseFunction::HenyeyGreensteinDraine { droplet_diameter_um: droplet_diameter_um.get() }
+        }
+        PhaseFile::Table { file } => PhaseFunction::Tabulated(Arc::new(table(file, path, directory)?)),
+    })
+}
 
-    fn table(&self, file: &Path) -> Result<TabulatedPhase, Problem> {
-        let path = self.directory.join(file);
-        let problem = |reason: String| {
-            Problem::new(format!("{}.phase.table.file", self.path), format!("table '{}': {reason}", path.display()))
-        };
-        let text = std::fs::read_to_string(&path).map_err(|error| problem(format!("cannot read it: {error}")))?;
-        TabulatedPhase::from_csv(&text).map_err(|error| problem(error.to_string()))
-    }
+fn table(file: &Path, field: &str, directory: &Path) -> Result<TabulatedPhase, Problem> {
+    let path = directory.join(file);
+    let problem = |reason: String| {
+        Problem::new(format!("{field}.phase.table.file"), format!("table '{}': {reason}", path.display()))
+    };
+    let text = std::fs::read_to_string(&path).map_err(|error| problem(format!("cannot read it: {error}")))?;
+    TabulatedPhase::from_csv(&text).map_err(|error| problem(error.to_string()))
 }

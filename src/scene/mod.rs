@@ -2,6 +2,7 @@
 
 mod assemble;
 mod camera;
+mod clouds;
 mod direction;
 mod error;
 mod file;
@@ -21,6 +22,7 @@ pub use locate::Place;
 pub use preset::{Preset, PresetSun};
 pub use sun_position::{SunPositionError, sun_direction};
 
+use welkin_lut::cloud::CloudLayer;
 use welkin_lut::{Medium, Planet};
 
 /// Everything that determines a picture, checked: no stage after this one meets an impossible number.
@@ -32,6 +34,10 @@ pub struct Scene {
     pub planet: Planet,
     /// What the air is made of.
     pub medium: Medium,
+    /// Layers of clouds, which may overlap.
+    pub clouds: Vec<CloudLayer>,
+    /// Seconds since the start: how far wind has carried the clouds, and they have changed.
+    pub time_s: f64,
     /// What shines; an empty list is darkness.
     pub lights: Vec<Light>,
     /// Where the picture is taken from, and its size.

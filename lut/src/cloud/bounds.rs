@@ -84,7 +84,8 @@ impl CloudBounds {
             block(x * f64::from(p.shape_per_m[axis]) + f64::from(p.shape_offset[axis]), SHAPE_BLOCKS)
         };
         let shape = (shape_at(up_m, 2) * SHAPE_BLOCKS + shape_at(v, 1)) * SHAPE_BLOCKS + shape_at(u, 0);
-        let finest = p.shape_per_m.iter().copied().fold(p.weather_per_m * WEATHER_BLOCKS as f32 / SHAPE_BLOCKS as f32, f32::max);
+        let finest =
+            p.shape_per_m.iter().copied().fold(p.weather_per_m * WEATHER_BLOCKS as f32 / SHAPE_BLOCKS as f32, f32::max);
         let reach_m = MARGIN / (f64::from(finest) * SHAPE_BLOCKS as f64);
         (reach_m, field.bound(self.shape[shape], weather, heights(reach_m)))
     }

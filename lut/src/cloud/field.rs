@@ -67,9 +67,8 @@ impl CloudField<'_> {
         let scale = f64::from(p.weather_per_m);
         let [x, y] = p.weather_offset.map(f64::from);
         let at = [u * scale + x, v * scale + y];
-        let weather = |channel: WeatherChannel| {
-            bilinear(WEATHER_SIZE, at, |texel| self.noise.weather[texel][channel as usize])
-        };
+        let weather =
+            |channel: WeatherChannel| bilinear(WEATHER_SIZE, at, |texel| self.noise.weather[texel][channel as usize]);
         self.column_of([
             weather(WeatherChannel::Cellular),
             weather(WeatherChannel::Sheet),
@@ -121,8 +120,7 @@ impl CloudField<'_> {
         let at = [(u * weather_scale + weather_x) * CURL_TILES, (v * weather_scale + weather_y) * CURL_TILES];
         let flow = |axis: usize| 2.0 * bilinear(CURL_SIZE, at, |texel| self.noise.curl[texel][axis]) - 1.0;
         let shift_m = f64::from(p.curl_m) * (1.0 - height);
-        let place =
-            [(u + shift_m * flow(0)) * scale + x, (v + shift_m * flow(1)) * scale + y, up_m * scale + z];
+        let place = [(u + shift_m * flow(0)) * scale + x, (v + shift_m * flow(1)) * scale + y, up_m * scale + z];
         let billows = trilinear(EROSION_SIZE, place, &self.noise.erosion);
         let wisps = 1.0 - clamp(8.0 * height);
         1.0 - billows + (2.0 * billows - 1.0) * wisps

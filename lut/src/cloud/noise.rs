@@ -122,7 +122,10 @@ fn curl([x, y]: [usize; 2]) -> [u8; 2] {
         perlin_octaves(position(texel, 8, CURL_SIZE), 8, 3, 51)
     };
     let before = CURL_SIZE - 1;
-    [byte(potential(0, 1) - potential(0, before), -1024, 1024), byte(potential(before, 0) - potential(1, 0), -1024, 1024)]
+    [
+        byte(potential(0, 1) - potential(0, before), -1024, 1024),
+        byte(potential(before, 0) - potential(1, 0), -1024, 1024),
+    ]
 }
 
 fn weather() -> Vec<[u8; 4]> {
@@ -139,10 +142,7 @@ fn weather() -> Vec<[u8; 4]> {
 }
 
 /// A tile of values, filled in parallel.
-fn filled<T: Copy + Default + Send>(
-    [width, height, depth]: [usize; 3],
-    at: impl Fn([usize; 3]) -> T + Sync,
-) -> Vec<T> {
+fn filled<T: Copy + Default + Send>([width, height, depth]: [usize; 3], at: impl Fn([usize; 3]) -> T + Sync) -> Vec<T> {
     let mut values = vec![T::default(); width * height * depth];
     let rows = (height * depth).div_ceil(thread::available_parallelism().map_or(1, usize::from));
     thread::scope(|scope| {

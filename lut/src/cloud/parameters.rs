@@ -102,10 +102,32 @@ impl CloudParameters {
         }
     }
 
+    /// All numbers in the order of the shaders' struct.
+    pub fn to_array(&self) -> [f32; 32] {
+        let p = self;
+        let rows = [
+            p.gradient,
+            with(p.shape_per_m, p.base_m),
+            with(p.shape_offset, p.thickness_m),
+            with(p.erosion_offset, p.erosion_per_m),
+            [p.weather_offset[0], p.weather_offset[1], p.along[0], p.along[1]],
+            [p.weather_per_m, p.sheet, p.coverage_from, p.coverage_slope],
+            [p.anvil_from, p.reach, p.erosion, p.curl_m],
+            [p.edge, p.water_at_base, p.extinction_per_m, p.padding],
+        ];
+        let mut numbers = [0.0; 32];
+        numbers.chunks_exact_mut(4).zip(rows).for_each(|(four, row)| four.copy_from_slice(&row));
+        numbers
+    }
+
     /// Whether the kind has an anvil.
     pub fn has_anvil(&self) -> bool {
         self.anvil_from < NEVER
     }
+}
+
+fn with([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
+    [x, y, z, w]
 }
 
 /// Streaks lie along the wind; in calm air, along the east.
@@ -118,7 +140,8 @@ fn stretch_direction(layer: &CloudLayer) -> [f64; 2] {
 /// The map's value above which a share of its area lies; with full coverage, low enough for full strength everywhere.
 fn coverage_threshold(sheet: f64, softness: f64, coverage: f64) -> f64 {
     let value = |texel: &[u8; 4]| {
-        let [cellular, sheets] = [WeatherChannel::Cellular, WeatherChannel::Sheet].map(|c| f64::from(texel[c as usize]));
+        let [cellular, sheets] =
+            [WeatherChannel::Cellular, WeatherChannel::Sheet].map(|c| f64::from(texel[c as usize]));
         (cellular + (sheets - cellular) * sheet) / 255.0
     };
     // Every fifth texel: a step that no row has in common with the next.

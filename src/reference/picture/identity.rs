@@ -11,7 +11,7 @@ use crate::scene::Scene;
 pub struct Identity {
     /// Name of the scene, for messages.
     pub scene: String,
-    /// Fingerprint of the scene's planet, medium, lights and camera.
+    /// Fingerprint of the scene's planet, medium, clouds, lights and camera.
     pub fingerprint: Fingerprint,
     /// Version of the program, because a new one may walk differently.
     pub version: String,
@@ -56,7 +56,8 @@ impl Identity {
     /// Of one part of a scene's picture.
     pub fn new(scene: &Scene, seed: u64, sampling: &Sampling, shard: Shard) -> Self {
         // Debug prints every number so that it reads back as the same bits. Name and display do not touch radiance.
-        let problem = format!("{:?}", (&scene.planet, &scene.medium, &scene.lights, &scene.camera));
+        let problem =
+            format!("{:?}", (&scene.planet, &scene.medium, &scene.clouds, scene.time_s, &scene.lights, &scene.camera));
         Self {
             scene: scene.name.clone(),
             fingerprint: Fingerprint::of(&problem),

@@ -1,10 +1,12 @@
 //! What a scene file may say: the types that both the reader and the JSON schema are made from.
 
+mod clouds;
 mod light;
 mod medium;
 pub mod number;
 mod per_band;
 
+pub use clouds::CloudFile;
 pub use light::{LightsFile, SunFile, WhenFile};
 pub use medium::{ConstituentChange, ConstituentFile, MediumFile, PhaseFile, ProfileFile};
 pub use per_band::PerBand;
@@ -13,7 +15,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Preset;
-use number::{Altitude, Azimuth, Elevation, Exposure, FieldOfView, Fraction, Length, Number, Pixels};
+use number::{Altitude, Azimuth, Elevation, Exposure, FieldOfView, Fraction, Length, Number, Pixels, Time};
 
 /// A welkin scene: a planet with its air, what shines on it, and a camera.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -21,6 +23,8 @@ use number::{Altitude, Azimuth, Elevation, Exposure, FieldOfView, Fraction, Leng
 pub struct SceneFile {
     /// What the scene is called in reports; by default the file's name without its ending.
     pub name: Option<String>,
+    /// Seconds since the start: wind has carried the clouds and they have changed; by default 0.
+    pub time_s: Option<Number<Time>>,
     /// The planet, air and sun that everything below is a change to.
     pub preset: Preset,
     /// What differs from the preset's planet.
@@ -28,6 +32,9 @@ pub struct SceneFile {
     pub planet: PlanetFile,
     /// What differs from the preset's air.
     pub medium: Option<MediumFile>,
+    /// Layers of clouds.
+    #[serde(default)]
+    pub clouds: Vec<CloudFile>,
     /// The sun.
     pub sun: SunFile,
     /// Lights besides the sun.

@@ -142,6 +142,14 @@ intervals! {
     Altitude: Included(-1e10), Included(1e10);
     /// A coefficient, 1/m, or a factor on one.
     Coefficient: Included(0.0), Included(1e6);
+    /// Water in a cubic metre of cloud, g.
+    WaterContent: Included(0.0), Included(1e3);
+    /// The effective radius of droplets or crystals, µm.
+    DropRadius: Included(0.1), Included(1e4);
+    /// A component of a velocity, m/s.
+    Speed: Included(-1e3), Included(1e3);
+    /// Seconds, to either side of the start: three centuries.
+    Time: Included(-1e10), Included(1e10);
     /// An amount of light in any unit.
     Light: Included(0.0), Included(1e12);
     /// A reflectance.
