@@ -18,7 +18,8 @@ struct DirectionalLight {
     angular_radius_rad: f32,
     // The disc's radiance falls towards its limb as the cosine to this power.
     limb_exponent: vec3<f32>,
-    padding: f32,
+    // Of the disc where light is averaged over it; 0 where its width does not matter.
+    averaged_radius_rad: f32,
 }
 
 struct Observer {

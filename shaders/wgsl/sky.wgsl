@@ -8,10 +8,11 @@
 // belongs in the picture), MULTIPLE_SCATTERING, EMISSION (the air gives off light of its own).
 
 #import welkin::atmosphere::{atmosphere, phase_per_sr, PI, SCATTERER_COUNT}
+#import welkin::disc::{beam_count, beam_mu_s, beam_weight, direct_irradiance_of_disc}
 #import welkin::mapping
 #import welkin::march::{ground_mu_s, view_ray}
 #import welkin::observer::{light_mu_s, observer}
-#import welkin::tables::{diffuse_ground_irradiance, direct_ground_irradiance, table_sampler}
+#import welkin::tables::{diffuse_ground_irradiance, table_sampler}
 
 @group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
 @group(0) @binding(7) var sky_view_table: texture_2d_array<f32>;
@@ -81,9 +82,12 @@ fn ground_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
 #ifdef GROUND
     let mu = cos(direction.zenith_rad);
     let mu_s = ground_mu_s(view_ray(observer.altitude_m, mu, light_mu_s(light), direction.nu, true));
-    var irradiance = direct_ground_irradiance(mu_s);
+    var irradiance = direct_irradiance_of_disc(light, mu_s);
 #ifdef MULTIPLE_SCATTERING
-    irradiance += diffuse_ground_irradiance(multiple_scattering_table, mu_s);
+    for (var beam = 0u; beam < beam_count(light); beam++) {
+        let diffuse = diffuse_ground_irradiance(multiple_scattering_table, beam_mu_s(light, beam, mu_s));
+        irradiance += beam_weight(light, beam) * diffuse;
+    }
 #endif
     radiance = atmosphere.ground_albedo / PI * irradiance;
 #endif

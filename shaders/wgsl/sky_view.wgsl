@@ -4,6 +4,7 @@
 // pixel, by welkin::sky: what remains is smooth, and a small table is enough even around the sun.
 
 #import welkin::atmosphere::{atmosphere, densities, SCATTERER_COUNT, SCATTERER_SLOTS}
+#import welkin::disc::{beam_count, beam_mu_s, beam_weight}
 #import welkin::mapping
 #import welkin::march::{
     cut_at_shadow, leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, view_ray, AirRay, LEG_COUNT,
@@ -74,10 +75,18 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(size));
     let view = mapping::sky_view_from_unit(unit, below_horizon, observer.view);
     let mu = cos(view.zenith_rad);
-    let mu_s = light_mu_s(light);
-    let sines = sin(view.zenith_rad) * sqrt(max(1.0 - mu_s * mu_s, 0.0));
-    let nu = clamp(mu * mu_s + sines * cos(view.azimuth_rad), -1.0, 1.0);
-    var sum = integrate(cut_at_shadow(view_ray(observer.altitude_m, mu, mu_s, nu, below_horizon)));
+    var sum: Integrals;
+    for (var beam = 0u; beam < beam_count(light); beam++) {
+        let mu_s = beam_mu_s(light, beam, light_mu_s(light));
+        let sines = sin(view.zenith_rad) * sqrt(max(1.0 - mu_s * mu_s, 0.0));
+        let nu = clamp(mu * mu_s + sines * cos(view.azimuth_rad), -1.0, 1.0);
+        var part = integrate(cut_at_shadow(view_ray(observer.altitude_m, mu, mu_s, nu, below_horizon)));
+        let weight = beam_weight(light, beam);
+        sum.multiple += weight * part.multiple;
+        for (var c = 0u; c < SCATTERER_COUNT; c++) {
+            sum.single[c] += weight * part.single[c];
+        }
+    }
     let first = layer_of(light, below_horizon);
     textureStore(sky_view_image, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(logarithm(sum.multiple), 0.0));
     for (var c = 0u; c < SCATTERER_COUNT; c++) {

@@ -40,6 +40,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("AIR", facts.has_air()),
         ("LIT", facts.is_lit()),
         ("EMISSION", !facts.emitters.is_empty()),
+        ("DISC", facts.lights.iter().any(|light| facts.is_wide(light))),
         ("GROUND", facts.orders == Orders::All),
         ("MULTIPLE_SCATTERING", facts.has_multiple_scattering()),
         ("CAPTURE", facts.outputs.capture),

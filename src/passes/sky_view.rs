@@ -14,8 +14,10 @@ pub const PASS: Pass = Pass {
         reads: &["optical_depth_table", "multiple_scattering_table"],
         writes: &["sky_view_table"],
         inputs: |facts| {
-            // Azimuths in the table count from the light, so only elevations matter.
-            let elevations: Vec<_> = facts.lights.iter().map(|light| light.direction.elevation_rad).collect();
+            // Azimuths in the table count from the light, so only elevations matter, and a disc's width where it does.
+            let disc = |light| facts.is_wide(light).then_some((light.angular_radius_rad, light.limb_darkening));
+            let elevations: Vec<_> =
+                facts.lights.iter().map(|light| (light.direction.elevation_rad, disc(light))).collect();
             let settings = &facts.settings;
             Fingerprint::of(&(elevations, facts.observer_altitude_m(), settings.nodes_per_leg, settings.sky_view_size))
         },
@@ -39,7 +41,12 @@ fn need(facts: &Facts) -> Need {
     if facts.scatterers().is_empty() {
         return Need::NotNeeded("no constituent scatters".to_owned());
     }
-    Need::Needed(view_optical_depth::seen_from(facts))
+    let wide: Vec<_> = facts.lights.iter().filter(|light| facts.is_wide(light)).map(|l| l.name.as_str()).collect();
+    let averaged = match wide.is_empty() {
+        true => String::new(),
+        false => format!("; light is averaged over the disc of {}, which stands low", wide.join(", ")),
+    };
+    Need::Needed(format!("{}{averaged}", view_optical_depth::seen_from(facts)))
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {

@@ -3,6 +3,7 @@
 use welkin_lut::mapping::SkyViewMapping;
 use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
+use super::disc::is_wide;
 use super::{PlanError, Settings};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, Light, Scene};
@@ -116,6 +117,11 @@ impl<'a> Facts<'a> {
     /// Whether a directional light shines on air that scatters.
     pub fn is_lit(&self) -> bool {
         !self.scatterers().is_empty() && !self.lights.is_empty()
+    }
+
+    /// Whether a light's disc is so wide that pixels change when light is averaged over it.
+    pub fn is_wide(&self, light: &DirectionalLight) -> bool {
+        is_wide(light, &self.scene.planet, self.observer_altitude_m())
     }
 
     /// Whether light of the second and later orders, and the ground's, belongs in the picture.

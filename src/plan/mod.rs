@@ -1,6 +1,7 @@
 //! What a scene calls for: a pure function from facts and history to a [`Plan`]. Knows nothing of Vulkan.
 
 mod declaration;
+mod disc;
 mod facts;
 mod settings;
 

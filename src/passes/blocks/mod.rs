@@ -67,7 +67,7 @@ mod tests {
             compose,
             "DirectionalLight",
             DirectionalLightBlock,
-            [direction, azimuth_rad, irradiance, angular_radius_rad, limb_exponent]
+            [direction, azimuth_rad, irradiance, angular_radius_rad, limb_exponent, averaged_radius_rad]
         );
         assert_eq!(size(&compose, "DirectionalLight"), size_of::<DirectionalLightBlock>());
         assert_layout!(compose, "SkyViewRange", SkyViewRangeBlock, [horizon_rad, sky_end_rad, natural_y, snapped_y]);

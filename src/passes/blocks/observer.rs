@@ -16,7 +16,7 @@ pub(super) struct DirectionalLightBlock {
     pub(super) irradiance: [f32; 3],
     pub(super) angular_radius_rad: f32,
     pub(super) limb_exponent: [f32; 3],
-    pub(super) padding: f32,
+    pub(super) averaged_radius_rad: f32,
 }
 
 /// WGSL `SkyViewRange`.
@@ -39,14 +39,15 @@ pub(super) struct ObserverHeader {
 }
 
 impl DirectionalLightBlock {
-    fn new(light: &DirectionalLight) -> Self {
+    fn new(facts: &Facts, light: &DirectionalLight) -> Self {
+        let averaged_radius_rad = if facts.is_wide(light) { light.angular_radius_rad as f32 } else { 0.0 };
         Self {
             direction: light.direction.to_vector().as_vec3().to_array(),
             azimuth_rad: wrapped_azimuth_rad(light.direction.to_vector()) as f32,
             irradiance: vec3(light.irradiance),
             angular_radius_rad: light.angular_radius_rad as f32,
             limb_exponent: vec3(light.limb_exponent()),
-            padding: 0.0,
+            averaged_radius_rad,
         }
     }
 }
@@ -69,7 +70,7 @@ pub fn observer_block(facts: &Facts) -> Vec<u8> {
             snapped_y: mapping.horizontal_y[1] as f32,
         },
     };
-    let mut lights: Vec<_> = facts.lights.iter().map(|light| DirectionalLightBlock::new(light)).collect();
+    let mut lights: Vec<_> = facts.lights.iter().map(|light| DirectionalLightBlock::new(facts, light)).collect();
     lights.resize(
         facts.light_slots() as usize,
         DirectionalLightBlock { direction: [0.0, 0.0, 1.0], ..Zeroable::zeroed() },
