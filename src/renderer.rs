@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::frame::Frame;
 use crate::gpu::{Clock, DeviceRequest, Gpu};
-use crate::passes::{self, FRAME, Pass, Recording, RenderError, Resources, TABLES, record_probe};
-use crate::plan::{Decision, Facts, History, Outputs, Plan, Settings};
+use crate::passes::{self, CLOUDS, FRAME, Pass, Recording, RenderError, Resources, TABLES, record_probe};
+use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Settings};
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Light, Scene};
 
@@ -50,7 +50,7 @@ impl Renderer {
     /// [`RenderError::Plan`] when the scene asks for more than the renderer can do.
     pub fn plan(scene: &Scene, settings: Settings, outputs: Outputs) -> Result<Plan, RenderError> {
         let facts = Facts::new(scene, settings, Orders::All, outputs)?;
-        let declarations: Vec<_> = TABLES.iter().chain(&FRAME).map(|pass| pass.declaration).collect();
+        let declarations: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).map(|pass| pass.declaration).collect();
         Ok(Plan::new(&facts, &History::default(), &declarations))
     }
 
@@ -73,7 +73,7 @@ impl Renderer {
     /// [`RenderError::Plan`] when the scene asks for more than the renderer can do; device and shader errors.
     pub fn render(&mut self, scene: &Scene, settings: Settings, outputs: Outputs) -> Result<Rendered, RenderError> {
         let facts = Facts::new(scene, settings, Orders::All, outputs)?;
-        let passes: Vec<_> = TABLES.iter().chain(&FRAME).collect();
+        let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
         let timings = self.execute("frame", &facts, &passes, 0)?;
         let (frame, picture) = self.read_back(&facts)?;
         Ok(Rendered { frame, picture, timings })
@@ -91,6 +91,11 @@ impl Renderer {
         rays: &[Ray],
         orders: Orders,
     ) -> Result<Vec<RayRadiance>, RenderError> {
+        if scene.clouds.iter().any(|layer| !layer.is_empty()) {
+            return Err(
+                PlanError::Unsupported { what: "single rays are asked for in a scene with clouds".to_owned() }.into()
+            );
+        }
         let mut answers =
             vec![RayRadiance { radiance: [0.0; 3], transmittance: [0.0; 3], standard_error: [0.0; 3] }; rays.len()];
         for group in groups_of_one_view(rays) {

@@ -85,7 +85,7 @@ fn upward(count: usize) -> Vec<DVec3> {
 #[test]
 fn walks_through_clouds_that_only_absorb_find_the_transmittance_that_quadrature_finds() {
     // Diluted until many walks pass, or enriched until many do not.
-    for (kind, dilution) in [(CloudKind::Stratocumulus, 0.1), (CloudKind::Cirrus, 20.0)] {
+    for (kind, dilution) in [(CloudKind::Stratocumulus, 0.1), (CloudKind::Cirrus, 50.0)] {
         let world = under_uniform_sky(kind, dilution, 0.0, 0.0);
         let directions = upward(12);
         let (mut worst, mut darkest) = (0.0_f64, 1.0_f64);

@@ -121,13 +121,17 @@ fn extinction_at(altitude_m: f32) -> vec3<f32> {
     return extinction;
 }
 
+// One lobe's part of a phase function, 1/sr.
+fn lobe_per_sr(lobe: PhaseLobe, nu: f32) -> f32 {
+    let base = lobe.gap + lobe.slope * (1.0 - nu);
+    return lobe.scale_per_sr * (1.0 + lobe.quadratic * nu * nu) * exp2(-lobe.exponent * log2(base));
+}
+
 // P(nu) of a constituent, 1/sr; nu = 1 is forward.
 fn phase_per_sr(constituent: u32, nu: f32) -> f32 {
     var phase = 0.0;
     for (var i = 0u; i < LOBE_COUNT; i++) {
-        let lobe = atmosphere.constituents[constituent].lobes[i];
-        let base = lobe.gap + lobe.slope * (1.0 - nu);
-        phase += lobe.scale_per_sr * (1.0 + lobe.quadratic * nu * nu) * exp2(-lobe.exponent * log2(base));
+        phase += lobe_per_sr(atmosphere.constituents[constituent].lobes[i], nu);
     }
     return phase;
 }

@@ -1,6 +1,6 @@
 // Pass: linear radiance of every pixel: the air, the ground behind it, and the discs of the lights.
 //
-// Definitions: CAPTURE (also write transmittance and distance, for files and engines).
+// Definitions: CAPTURE (also write transmittance and distance, for files and engines), CLOUDS.
 
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::camera::{camera, view_direction, pixel_angle_rad}
@@ -15,6 +15,30 @@
 // What a file means by "the ray ends in space".
 const INFINITY_BITS: u32 = 0x7f800000u;
 #endif
+
+#ifdef CLOUDS
+@group(1) @binding(10) var cloud_radiance_image: texture_2d<f32>;
+@group(1) @binding(11) var cloud_air_image: texture_2d<f32>;
+#endif
+
+// What clouds do to a pixel: their own light, what they let through, and what they leave of the air's light.
+struct Overlay {
+    radiance: vec3<f32>,
+    transmittance: f32,
+    air: vec3<f32>,
+}
+
+// `behind` is the transmittance of all of the air.
+fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
+#ifdef CLOUDS
+    let clouds = textureLoad(cloud_radiance_image, pixel, 0);
+    let air = textureLoad(cloud_air_image, pixel, 0).rgb;
+    let left = (air - clouds.a * behind) / max(1.0 - behind, vec3<f32>(1e-6));
+    return Overlay(clouds.rgb, clouds.a, clamp(left, vec3<f32>(0.0), vec3<f32>(1.0)));
+#else
+    return Overlay(vec3<f32>(0.0), 1.0, vec3<f32>(1.0));
+#endif
+}
 
 // The direction as the tables of one light know it.
 fn relative_to_light(view: vec3<f32>, light: u32) -> SkyDirection {
@@ -59,8 +83,11 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
         return;
     }
     let view = view_direction(pixel.xy);
-    var radiance = emission_radiance(relative_to_light(view, 0u));
-    let transmittance = view_transmittance(relative_to_light(view, 0u));
+    let air_transmittance = view_transmittance(relative_to_light(view, 0u));
+    let clouds = overlay(pixel.xy, air_transmittance);
+    let transmittance = clouds.transmittance * air_transmittance;
+    // What glows lies above all clouds.
+    var radiance = clouds.radiance + clouds.transmittance * emission_radiance(relative_to_light(view, 0u));
     for (var light = 0u; light < LIGHT_COUNT; light++) {
         let direction = relative_to_light(view, light);
         var behind = vec3<f32>(0.0);
@@ -69,7 +96,7 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
         } else {
             behind = disc_radiance(view, light);
         }
-        radiance += observer.lights[light].irradiance * (air_radiance(light, direction) + transmittance * behind);
+        radiance += observer.lights[light].irradiance * (clouds.air * air_radiance(light, direction) + transmittance * behind);
     }
     textureStore(radiance_image, pixel.xy, vec4<f32>(radiance, 1.0));
 #ifdef CAPTURE

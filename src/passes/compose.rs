@@ -17,6 +17,8 @@ pub const PASS: Pass = Pass {
             "view_optical_depth_table",
             "sky_view_table",
             "view_emission_table",
+            "cloud_radiance_image",
+            "cloud_air_image",
         ],
         writes: &["radiance_image", "transmittance_image", "distance_image"],
         inputs: |facts| {

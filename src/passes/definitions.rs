@@ -1,8 +1,9 @@
 //! What shaders are specialised by: facts of the scene, and numbers of its settings.
 
+use welkin_lut::cloud::CloudKind;
 use welkin_shaders::{Definition, Definitions};
 
-use super::blocks::{ZONAL_COUNT, emission_breakpoints_m, lobe_count};
+use super::blocks::{ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count};
 use crate::plan::Facts;
 use crate::probe::Orders;
 
@@ -36,6 +37,18 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("COSINE_COUNT", directions.below + directions.band + directions.above),
         ("INVOCATION_COUNT", directions.count().min(MAX_INVOCATIONS)),
     ];
+    let clouds = &settings.clouds;
+    let cloud_numbers = [
+        ("CLOUD_LAYER_COUNT", facts.clouds.len() as u32),
+        ("CLOUD_TERM_COUNT", cloud_term_count(facts)),
+        ("CLOUD_STEP_M", clouds.step_m),
+        ("CLOUD_STEP_PERMILLE", clouds.step_permille),
+        ("CLOUD_MAX_STEPS", clouds.max_steps),
+        ("CLOUD_GRID_SIZE", clouds.grid_size),
+        ("CLOUD_GRID_SLICES", clouds.grid_slices),
+        ("CLOUD_GRID_LEVELS", clouds.grid_levels),
+        ("CLOUD_CELL_M", clouds.cell_m),
+    ];
     let flags = [
         ("AIR", facts.has_air()),
         ("LIT", facts.is_lit()),
@@ -43,9 +56,12 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("DISC", facts.lights.iter().any(|light| facts.is_wide(light))),
         ("GROUND", facts.orders == Orders::All),
         ("MULTIPLE_SCATTERING", facts.has_multiple_scattering()),
+        ("CLOUDS", !facts.clouds.is_empty()),
+        ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),
         ("CAPTURE", facts.outputs.capture),
     ];
+    let numbers = numbers.into_iter().chain(cloud_numbers);
     let numbers = numbers.map(|(name, value)| (name.to_owned(), Definition::U32(value)));
     let flags = flags.map(|(name, value)| (name.to_owned(), Definition::Bool(value)));
-    numbers.into_iter().chain(flags).collect()
+    numbers.chain(flags).collect()
 }

@@ -4,6 +4,13 @@
 //! is what a later one reads under it.
 
 pub mod blocks;
+mod cloud_bounds;
+mod cloud_density;
+mod cloud_erosion;
+mod cloud_light;
+mod cloud_shape;
+mod cloud_weather;
+mod clouds;
 mod compose;
 mod definitions;
 mod display;
@@ -44,6 +51,17 @@ pub const TABLES: [Pass; 7] = [
     view_optical_depth::PASS,
     sky_view::PASS,
     view_emission::PASS,
+];
+
+/// Clouds: their noise, their light, and what each pixel sees of them, in order.
+pub const CLOUDS: [Pass; 7] = [
+    cloud_shape::PASS,
+    cloud_erosion::PASS,
+    cloud_weather::PASS,
+    cloud_bounds::PASS,
+    cloud_density::PASS,
+    cloud_light::PASS,
+    clouds::PASS,
 ];
 
 /// What makes a frame of them, in order.

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{
-    CameraBlock, ZONAL_COUNT, atmosphere_block, cosine_nodes, emission_block, gauss_nodes, legendre_moments,
-    observer_block,
+    CameraBlock, ZONAL_COUNT, atmosphere_block, cloud_layers, cloud_matter, cloud_terms, cosine_nodes, emission_block,
+    gauss_nodes, legendre_moments, observer_block,
 };
 use super::{RenderError, Resources, definitions};
 use crate::gpu::{Commands, GpuImage, Resource, Work};
@@ -53,6 +53,11 @@ impl<'a> Recording<'a> {
         resources.fill_buffer("legendre_moments", &legendre_moments(facts, facts.settings.degree_count))?;
         if !facts.emitters.is_empty() {
             resources.fill_buffer("zonal_moments", &legendre_moments(facts, ZONAL_COUNT))?;
+        }
+        if !facts.clouds.is_empty() {
+            resources.fill_buffer("cloud_layers", &cloud_layers(facts))?;
+            resources.fill_buffer("cloud_terms", &cloud_terms(facts))?;
+            resources.fill_buffer("cloud_matter", &cloud_matter(facts))?;
         }
         let commands = resources.gpu.record_timed(label)?;
         Ok(Self { facts, resources, parameters: Parameters::new(facts), definitions: definitions(facts), commands })

@@ -1,5 +1,6 @@
 //! What the plan and the passes know about a scene, sorted the way the shaders want it.
 
+use welkin_lut::cloud::CloudLayer;
 use welkin_lut::mapping::SkyViewMapping;
 use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
@@ -60,6 +61,8 @@ pub struct Facts<'a> {
     pub groups: ConstituentGroups,
     /// Constituents that give off light, by profile as above.
     pub emitters: Vec<&'a Constituent>,
+    /// Layers in which there are clouds.
+    pub clouds: Vec<&'a CloudLayer>,
     /// Directional lights that shine.
     pub lights: Vec<&'a DirectionalLight>,
     /// Where the camera stands.
@@ -79,8 +82,10 @@ impl<'a> Facts<'a> {
         }
         let mut emitters: Vec<_> = scene.medium.constituents.iter().filter(|c| c.emits()).collect();
         emitters.sort_by_key(|emitter| profile_rank(&emitter.profile));
-        if let Some(layer) = scene.clouds.iter().find(|layer| !layer.is_empty()) {
-            return Err(PlanError::Unsupported { what: format!("the scene has clouds ('{}')", layer.name) });
+        let clouds: Vec<_> = scene.clouds.iter().filter(|layer| !layer.is_empty()).collect();
+        if let Some(layer) = clouds.iter().find(|layer| matches!(layer.phase, PhaseFunction::Tabulated(_))) {
+            let what = format!("layer of clouds '{}' has a tabulated phase function", layer.name);
+            return Err(PlanError::Unsupported { what });
         }
         let camera = &scene.camera;
         Ok(Self {
@@ -91,6 +96,7 @@ impl<'a> Facts<'a> {
             groups: groups(&constituents),
             constituents,
             emitters,
+            clouds,
             lights: shining_lights(scene)?,
             viewpoint: match camera.altitude_m {
                 h if h <= scene.planet.atmosphere_height_m => Viewpoint::InAir,

@@ -1,5 +1,6 @@
 //! What a scene calls for: a pure function from facts and history to a [`Plan`]. Knows nothing of Vulkan.
 
+mod cloud_settings;
 mod declaration;
 mod disc;
 mod facts;
@@ -7,6 +8,7 @@ mod settings;
 
 use std::collections::BTreeMap;
 
+pub use cloud_settings::{CloudScattering, CloudSettings};
 pub use declaration::{Declaration, Fingerprint, Need};
 pub use facts::{ConstituentGroups, Facts, Outputs, Viewpoint};
 use serde::Serialize;

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use super::CloudSettings;
+
 /// How much accuracy a picture is worth. The error of each is measured in docs/accuracy.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Quality {
@@ -88,6 +90,8 @@ pub struct Settings {
     pub orders: u32,
     /// Sky view, each half: (azimuth, elevation).
     pub sky_view_size: [u32; 2],
+    /// Clouds.
+    pub clouds: CloudSettings,
 }
 
 impl Settings {
@@ -102,6 +106,7 @@ impl Settings {
                 directions: Directions { below: 3, band: 2, above: 4, azimuths: 4 },
                 orders: 3,
                 sky_view_size: [32, 48],
+                clouds: CloudSettings::of(quality),
             },
             Quality::Medium => Self {
                 nodes_per_leg: 10,
@@ -111,6 +116,7 @@ impl Settings {
                 directions: Directions { below: 4, band: 3, above: 5, azimuths: 6 },
                 orders: 3,
                 sky_view_size: [48, 96],
+                clouds: CloudSettings::of(quality),
             },
             Quality::High => Self {
                 nodes_per_leg: 12,
@@ -120,6 +126,7 @@ impl Settings {
                 directions: Directions { below: 4, band: 3, above: 5, azimuths: 8 },
                 orders: 3,
                 sky_view_size: [80, 144],
+                clouds: CloudSettings::of(quality),
             },
             Quality::Ultra => Self {
                 nodes_per_leg: 16,
@@ -129,6 +136,7 @@ impl Settings {
                 directions: Directions { below: 5, band: 3, above: 6, azimuths: 8 },
                 orders: 4,
                 sky_view_size: [96, 192],
+                clouds: CloudSettings::of(quality),
             },
         }
     }

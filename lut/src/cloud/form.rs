@@ -94,7 +94,7 @@ impl CloudKind {
             Self::Cumulus => of([1000.0, 2300.0], 0.35, 0.3, 7.0, 1.0),
             Self::Congestus => of([900.0, 5000.0], 0.2, 1.0, 10.0, 2.0),
             Self::Cumulonimbus => of([800.0, 11_000.0], 0.1, 2.5, 15.0, 3.0),
-            Self::Cirrus => of([8500.0, 9700.0], 0.4, 0.01, 30.0, 0.2),
+            Self::Cirrus => of([8500.0, 9700.0], 0.5, 0.01, 30.0, 0.2),
         }
     }
 
@@ -165,11 +165,11 @@ impl CloudKind {
                 gradient: [0.0, 0.4, 0.6, 1.0],
                 softness: 0.45,
                 reach: 0.9,
-                shape_tile_m: [24_000.0, 4800.0, 6000.0],
+                shape_tile_m: [40_000.0, 3600.0, 5000.0],
                 weather_tile_m: 90_000.0,
-                erosion_tile_m: 2400.0,
-                erosion: 0.5,
-                curl_m: 700.0,
+                erosion_tile_m: 1800.0,
+                erosion: 0.4,
+                curl_m: 500.0,
                 edge: 1.5,
                 water_at_base: 1.0,
                 ..sheet

@@ -60,6 +60,15 @@ impl PhaseLobeBlock {
         }
     }
 
+    /// A lobe that is not there must still have a base whose logarithm is finite.
+    pub(super) const ABSENT: Self =
+        Self { scale_per_sr: 0.0, quadratic: 0.0, gap: 1.0, slope: 0.0, exponent: 0.0, padding: [0.0; 3] };
+
+    /// The lobe with another strength.
+    pub(super) fn times(self, strength: f64) -> Self {
+        Self { scale_per_sr: (f64::from(self.scale_per_sr) * strength) as f32, ..self }
+    }
+
     fn schlick(k: f64) -> Self {
         Self {
             scale_per_sr: ((1.0 - k * k) / (4.0 * PI)) as f32,
@@ -74,7 +83,12 @@ impl PhaseLobeBlock {
 
 /// The lobes of a phase function that has a closed form.
 fn lobes(phase: &PhaseFunction) -> Vec<PhaseLobeBlock> {
-    let draine = PhaseLobeBlock::draine;
+    scaled_lobes(phase, 1.0)
+}
+
+/// The same with a factor on the asymmetry of every lobe.
+pub(super) fn scaled_lobes(phase: &PhaseFunction, factor: f64) -> Vec<PhaseLobeBlock> {
+    let draine = |weight, g: f64, alpha| PhaseLobeBlock::draine(weight, g * factor, alpha);
     match *phase {
         PhaseFunction::Isotropic => vec![draine(1.0, 0.0, 0.0)],
         PhaseFunction::Rayleigh => vec![draine(1.0, 0.0, 1.0)],
@@ -82,7 +96,7 @@ fn lobes(phase: &PhaseFunction) -> Vec<PhaseLobeBlock> {
         PhaseFunction::DoubleHenyeyGreenstein { weight, g1, g2 } => {
             vec![draine(weight, g1, 0.0), draine(1.0 - weight, g2, 0.0)]
         }
-        PhaseFunction::Schlick { k } => vec![PhaseLobeBlock::schlick(k)],
+        PhaseFunction::Schlick { k } => vec![PhaseLobeBlock::schlick(k * factor)],
         PhaseFunction::CornetteShanks { g } => vec![draine(1.0, g, 1.0)],
         PhaseFunction::Draine { g, alpha } => vec![draine(1.0, g, alpha)],
         PhaseFunction::HenyeyGreensteinDraine { droplet_diameter_um } => {
@@ -113,12 +127,10 @@ pub(super) fn profile(profile: &DensityProfile) -> (f32, f32) {
 impl ConstituentBlock {
     fn new(constituent: &Constituent) -> Self {
         let (profile_a, profile_b) = profile(&constituent.profile);
-        let mut padded = [PhaseLobeBlock::zeroed(); MAX_LOBES];
+        let mut padded = [PhaseLobeBlock::ABSENT; MAX_LOBES];
         for (slot, lobe) in padded.iter_mut().zip(lobes(&constituent.phase)) {
             *slot = lobe;
         }
-        // A lobe that is not there must still have a base whose logarithm is finite.
-        padded.iter_mut().filter(|lobe| lobe.gap == 0.0).for_each(|lobe| lobe.gap = 1.0);
         Self {
             scattering_per_m: vec3(constituent.scattering_per_m),
             profile_a,

@@ -2,12 +2,14 @@
 
 mod atmosphere;
 mod camera;
+mod clouds;
 mod emission;
 mod observer;
 mod quadrature;
 
 pub use atmosphere::{atmosphere_block, legendre_moments, lobe_count};
 pub use camera::CameraBlock;
+pub use clouds::{cloud_layers, cloud_matter, cloud_term_count, cloud_terms};
 pub use emission::{ZONAL_COUNT, emission_block, emission_breakpoints_m};
 pub use observer::observer_block;
 pub use quadrature::{GaussNodeBlock, cosine_nodes, gauss_nodes};

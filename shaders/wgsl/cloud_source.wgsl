@@ -1,0 +1,138 @@
+#define_import_path welkin::cloud_source
+// Light that a cloud's droplets send towards the observer.
+//
+// Legend
+//   term     one summand of the directional lights' part: P_k(nu) int sigma e^(-a_k (tau_light + tau_view)) ds. Single
+//            scattering has one with a = 1, octaves and bands several: only the numbers differ
+//   nu       cosine of the angle between view direction and light
+//
+// Definitions: CLOUD_TERM_COUNT.
+
+#import welkin::atmosphere::{atmosphere, lobe_per_sr, PhaseLobe}
+#import welkin::cloud_field::{CLOUD_LAYER_COUNT, CLOUD_LAYER_SLOTS}
+#import welkin::cloud_grid::{grid_sample, Part}
+#import welkin::geometry::horizon_mu
+#import welkin::mapping
+#import welkin::observer::{observer, LIGHT_COUNT}
+#import welkin::sky::multiple_scattering_table
+#import welkin::tables::{optical_depth_to_top, table_sampler}
+
+const TERM_COUNT: u32 = #{CLOUD_TERM_COUNT}u;
+const TERM_LOBES: u32 = 4u;
+
+struct CloudTerm {
+    // a_k.
+    attenuation: f32,
+    padding_a: f32,
+    padding_b: f32,
+    padding_c: f32,
+    // P_k; scales may be negative.
+    lobes: array<PhaseLobe, TERM_LOBES>,
+}
+
+struct CloudMatter {
+    // b / c.
+    albedo: vec3<f32>,
+    // 1 - mean cosine of the phase function.
+    backward: f32,
+}
+
+// Layer by layer.
+@group(1) @binding(7) var<storage, read> cloud_terms: array<CloudTerm>;
+@group(1) @binding(8) var<storage, read> cloud_matter: array<CloudMatter>;
+// Optical depths to each light, to the layer's top and to its base.
+@group(1) @binding(9) var cloud_light_image: texture_3d<f32>;
+
+const PHASE_COUNT: u32 = CLOUD_LAYER_SLOTS * LIGHT_COUNT * TERM_COUNT;
+
+// P_k of every layer, light and term for a view direction: they do not change along a ray.
+fn phases(view: vec3<f32>) -> array<f32, PHASE_COUNT> {
+    var all: array<f32, PHASE_COUNT>;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        for (var light = 0u; light < LIGHT_COUNT; light++) {
+            let nu = clamp(dot(view, observer.lights[light].direction), -1.0, 1.0);
+            for (var k = 0u; k < TERM_COUNT; k++) {
+                var sum = 0.0;
+                for (var i = 0u; i < TERM_LOBES; i++) {
+                    sum += lobe_per_sr(cloud_terms[layer * TERM_COUNT + k].lobes[i], nu);
+                }
+                all[(layer * LIGHT_COUNT + light) * TERM_COUNT + k] = sum;
+            }
+        }
+    }
+    return all;
+}
+
+// A sample of a layer on a ray.
+struct Sample {
+    layer: u32,
+    map: vec2<f32>,
+    height: f32,
+    altitude_m: f32,
+    // Unit vector from the planet's centre.
+    up: vec3<f32>,
+    // Optical depth of clouds from the observer to the sample's step, and of the step.
+    before: f32,
+    step: f32,
+}
+
+// int e^(-a tau) dtau over the step.
+fn seen(sample: Sample, attenuation: f32) -> f32 {
+    let a = max(attenuation, 1e-4);
+    return exp(-a * sample.before) * (1.0 - exp(-a * sample.step)) / a;
+}
+
+// Irradiance of a light above the clouds at a point: attenuated by the air, hidden by the planet.
+fn light_in_air(light: u32, altitude_m: f32, mu_s: f32) -> vec3<f32> {
+    if mu_s < horizon_mu(atmosphere.radius_m, altitude_m) {
+        return vec3<f32>(0.0);
+    }
+#ifdef AIR
+    return observer.lights[light].irradiance * exp(-optical_depth_to_top(altitude_m, mu_s));
+#else
+    return observer.lights[light].irradiance;
+#endif
+}
+
+// The diffuse field of the air at an altitude: radiance from above and from below, each as the mean of its half.
+struct Surroundings {
+    above: vec3<f32>,
+    below: vec3<f32>,
+}
+
+fn surroundings(altitude_m: f32, mu_s: f32, irradiance: vec3<f32>) -> Surroundings {
+    var around: Surroundings;
+#ifdef MULTIPLE_SCATTERING
+    let unit = mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m);
+    let uv = mapping::inset(unit, vec2<f32>(textureDimensions(multiple_scattering_table)));
+    let mean = 0.282094792 * exp(textureSampleLevel(multiple_scattering_table, table_sampler, uv, 0, 0.0).rgb);
+    // Over a half sphere the first zonal harmonic's mean is half its value at the pole: √3 / 2 in units of the mean.
+    let tilt = 0.866025404 * textureSampleLevel(multiple_scattering_table, table_sampler, uv, 1, 0.0).rgb;
+    around.above = irradiance * mean * max(1.0 + tilt, vec3<f32>(0.0));
+    around.below = irradiance * mean * max(1.0 - tilt, vec3<f32>(0.0));
+#endif
+    return around;
+}
+
+// Radiance that a step adds, before the air in front of it.
+fn step_radiance(sample: Sample, phase: ptr<function, array<f32, PHASE_COUNT>>) -> vec3<f32> {
+    let matter = cloud_matter[sample.layer];
+    var radiance = vec3<f32>(0.0);
+    for (var light = 0u; light < LIGHT_COUNT; light++) {
+        let mu_s = dot(sample.up, observer.lights[light].direction);
+        let part = Part(light, LIGHT_COUNT);
+        let depths = grid_sample(cloud_light_image, table_sampler, part, sample.layer, sample.map, sample.height);
+        var directional = 0.0;
+        for (var k = 0u; k < TERM_COUNT; k++) {
+            let a = cloud_terms[sample.layer * TERM_COUNT + k].attenuation;
+            let p = (*phase)[(sample.layer * LIGHT_COUNT + light) * TERM_COUNT + k];
+            directional += p * exp(-a * depths.x) * seen(sample, a);
+        }
+        radiance += directional * light_in_air(light, sample.altitude_m, mu_s);
+        let around = surroundings(sample.altitude_m, mu_s, observer.lights[light].irradiance);
+        // Diffuse light through a layer of conservative scatterers, by two streams: 1 / (1 + 3/4 (1 - g) tau).
+        let through = 1.0 / (1.0 + 0.75 * matter.backward * depths.yz);
+        radiance += 0.5 * seen(sample, 1.0) * (around.above * through.x + around.below * through.y);
+    }
+    return matter.albedo * radiance;
+}

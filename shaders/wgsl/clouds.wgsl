@@ -1,0 +1,251 @@
+// Pass: clouds along every pixel's ray: their light, what they let through, and how much of the air's light is left.
+//
+// The ray is cut where it crosses a layer's base or top; gaps are taken in one step, and inside layers steps skip what
+// is certainly empty. In a step the light is integrated with its own attenuation, so that no step is too long for
+// energy. Steps start at a place of their own in each pixel, by a hash: the same picture every time.
+//
+// The air's light in front of a depth t is taken as A (1 - T(t)) / (1 - T(end)), A the whole ray's: exact where the
+// light scattered per optical depth does not change along the ray.
+//
+// Definitions: CLOUD_MAX_STEPS; CLOUD_STEP_M, the shortest step; CLOUD_STEP_PERMILLE, a step's share of the distance.
+
+#import welkin::atmosphere::{atmosphere, extinction_at}
+#import welkin::camera::view_direction
+#import welkin::cloud_field::{cloud_layers, layer_density, to_map, CLOUD_LAYER_COUNT}
+#import welkin::cloud_noise::hash
+#import welkin::cloud_skip::empty_m
+#import welkin::cloud_source::{phases, step_radiance, Sample, PHASE_COUNT}
+#import welkin::geometry
+#import welkin::observer::{observer, LIGHT_COUNT}
+
+// Light of the clouds at the observer, and their transmittance.
+@group(1) @binding(10) var cloud_radiance_image: texture_storage_2d<rgba32float, write>;
+// int T dT_air to the last cloud and T T_air there, from which the air's light that is left follows; and the mean
+// distance of what the clouds hide.
+@group(1) @binding(11) var cloud_air_image: texture_storage_2d<rgba32float, write>;
+
+const MAX_STEPS: u32 = #{CLOUD_MAX_STEPS}u;
+const STEP_M: f32 = #{CLOUD_STEP_M}.0;
+const STEP_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
+const CROSSINGS: u32 = 4u * CLOUD_LAYER_COUNT;
+const CROSSING_SLOTS: u32 = max(CROSSINGS, 1u);
+const NEVER_M: f32 = 1e30;
+// Optical depth beyond which clouds are opaque, and that beyond which they hide a light's disc too, which is a
+// hundred thousand times as bright as the sky.
+const OPAQUE: f32 = 6.0;
+const DISC_OPAQUE: f32 = 18.0;
+// Cosine of the angle around a light within which its disc may be seen.
+const NEAR_LIGHT: f32 = 0.9998;
+
+struct Ray {
+    direction: vec3<f32>,
+    mu: f32,
+    end_m: f32,
+    crossings_m: array<f32, CROSSING_SLOTS>,
+}
+
+struct Sum {
+    radiance: vec3<f32>,
+    // Optical depth of clouds and of air so far.
+    clouds: f32,
+    air: vec3<f32>,
+    // int T dT_air.
+    left: vec3<f32>,
+    // int t dT, m.
+    weighted_m: f32,
+}
+
+fn altitude_m(ray: Ray, t_m: f32) -> f32 {
+    return geometry::altitude_along(atmosphere.radius_m, observer.altitude_m, ray.mu, t_m);
+}
+
+// Both distances to a shell, NEVER_M for those behind.
+fn shell_crossings_m(mu: f32, shell_m: f32) -> vec2<f32> {
+    let radius_m = atmosphere.radius_m;
+    let h = observer.altitude_m;
+    let gap = (shell_m - h) * (2.0 * radius_m + shell_m + h);
+    let b = (radius_m + h) * mu;
+    let discriminant = b * b + gap;
+    if discriminant < 0.0 {
+        return vec2<f32>(NEVER_M);
+    }
+    let root = sqrt(discriminant);
+    // The root without cancellation, then the other from their product.
+    let q = -(b + select(-root, root, b >= 0.0));
+    let other = select(-gap / q, 0.0, q == 0.0);
+    let both = vec2<f32>(min(q, other), max(q, other));
+    return select(vec2<f32>(NEVER_M), both, both > vec2<f32>(0.0));
+}
+
+fn ray_of(view: vec3<f32>) -> Ray {
+    var ray: Ray;
+    ray.direction = view;
+    ray.mu = view.z;
+    ray.end_m = NEVER_M;
+    if view.z < geometry::horizon_mu(atmosphere.radius_m, observer.altitude_m) {
+        ray.end_m = geometry::distance_to_shell_from_above(atmosphere.radius_m, observer.altitude_m, view.z, 0.0);
+    }
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        let base_m = cloud_layers[layer].base_m;
+        let base = shell_crossings_m(view.z, base_m);
+        let top = shell_crossings_m(view.z, base_m + cloud_layers[layer].thickness_m);
+        ray.crossings_m[4u * layer] = base.x;
+        ray.crossings_m[4u * layer + 1u] = base.y;
+        ray.crossings_m[4u * layer + 2u] = top.x;
+        ray.crossings_m[4u * layer + 3u] = top.y;
+    }
+    return ray;
+}
+
+// The next boundary after a distance.
+fn next_crossing_m(ray: ptr<function, Ray>, t_m: f32) -> f32 {
+    let after = t_m * 1.000001 + 0.01;
+    var next = NEVER_M;
+    for (var i = 0u; i < CROSSINGS; i++) {
+        let crossing = (*ray).crossings_m[i];
+        next = select(next, min(next, crossing), crossing > after);
+    }
+    return min(next, (*ray).end_m);
+}
+
+fn is_inside(layer: u32, altitude: f32) -> bool {
+    let up_m = altitude - cloud_layers[layer].base_m;
+    return up_m >= 0.0 && up_m <= cloud_layers[layer].thickness_m;
+}
+
+// Moves through air alone.
+fn pass_air(sum: ptr<function, Sum>, ray: Ray, from_m: f32, to_m: f32) {
+#ifdef AIR
+    let before = exp(-(*sum).air);
+    let count = u32(clamp((to_m - from_m) / 2000.0, 1.0, 16.0));
+    let step_m = (to_m - from_m) / f32(count);
+    for (var i = 0u; i < count; i++) {
+        (*sum).air += step_m * extinction_at(altitude_m(ray, from_m + (f32(i) + 0.5) * step_m));
+    }
+    (*sum).left += exp(-(*sum).clouds) * (before - exp(-(*sum).air));
+#endif
+}
+
+fn random(pixel: vec2<u32>) -> f32 {
+    return f32(hash(vec3<i32>(vec2<i32>(pixel), 0), 1u) >> 8u) / 16777216.0;
+}
+
+// One step through the layers at a point; returns whether there was any cloud.
+fn take_step(
+    sum: ptr<function, Sum>, ray: Ray, phase: ptr<function, array<f32, PHASE_COUNT>>, place: vec2<f32>, step_m: f32
+) -> bool {
+    let at_m = place.x;
+    let p = observer_position() + ray.direction * at_m;
+    let map = to_map(atmosphere.radius_m, p);
+    let altitude = place.y;
+    var sample: Sample;
+    sample.map = map;
+    sample.altitude_m = altitude;
+    sample.up = normalize(vec3<f32>(p.xy, p.z + atmosphere.radius_m));
+    sample.before = (*sum).clouds;
+    var light = vec3<f32>(0.0);
+    var extinction = 0.0;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        if is_inside(layer, altitude) {
+            extinction += cloud_layers[layer].extinction_per_m * layer_density(layer, map, altitude);
+        }
+    }
+    if extinction <= 0.0 {
+        return false;
+    }
+    sample.step = extinction * step_m;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        if is_inside(layer, altitude) {
+            sample.layer = layer;
+            sample.height = (altitude - cloud_layers[layer].base_m) / cloud_layers[layer].thickness_m;
+#if CLOUD_LAYER_COUNT > 1
+            let share = cloud_layers[layer].extinction_per_m * layer_density(layer, map, altitude) / extinction;
+            light += share * step_radiance(sample, phase);
+#else
+            light += step_radiance(sample, phase);
+#endif
+        }
+    }
+    (*sum).radiance += exp(-(*sum).air) * light;
+    (*sum).weighted_m += at_m * (exp(-(*sum).clouds) - exp(-(*sum).clouds - sample.step));
+    (*sum).clouds += sample.step;
+    return true;
+}
+
+fn observer_position() -> vec3<f32> {
+    return vec3<f32>(0.0, 0.0, observer.altitude_m);
+}
+
+// How far nothing need be looked at from a point, in the layers that hold another altitude: at a boundary the point's
+// own may be rounded to the wrong side.
+fn skip_m(map: vec2<f32>, altitude: f32, within: f32) -> f32 {
+    var least = NEVER_M;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        if is_inside(layer, within) {
+            least = min(least, empty_m(layer, map, altitude));
+        }
+    }
+    return least;
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
+    if any(pixel.xy >= textureDimensions(cloud_radiance_image)) {
+        return;
+    }
+    var ray = ray_of(view_direction(pixel.xy));
+    var phase = phases(ray.direction);
+    let offset = random(pixel.xy);
+    var opaque = OPAQUE;
+    for (var light = 0u; light < LIGHT_COUNT; light++) {
+        if dot(ray.direction, observer.lights[light].direction) > NEAR_LIGHT {
+            opaque = DISC_OPAQUE;
+        }
+    }
+    var sum: Sum;
+    var t_m = 0.0;
+    var boundary_m = next_crossing_m(&ray, t_m);
+    var entered_m = 0.0;
+    var was_empty = true;
+    for (var i = 0u; i < MAX_STEPS && t_m < ray.end_m && sum.clouds < opaque; i++) {
+        if t_m >= boundary_m {
+            boundary_m = next_crossing_m(&ray, t_m);
+            entered_m = t_m;
+        }
+        if boundary_m >= NEVER_M {
+            break;
+        }
+        // Between boundaries the middle tells which layers the ray is in.
+        let middle = altitude_m(ray, 0.5 * (t_m + boundary_m));
+        var inside = false;
+        for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+            inside = inside || is_inside(layer, middle);
+        }
+        if !inside {
+            pass_air(&sum, ray, t_m, boundary_m);
+            t_m = boundary_m;
+            was_empty = true;
+            continue;
+        }
+        // Seen from far above, a layer still takes a few steps.
+        let longest_m = max(0.125 * (boundary_m - entered_m), STEP_M);
+        let step_m = min(min(max(STEP_M, STEP_GROWTH * t_m), longest_m), boundary_m - t_m);
+        if was_empty {
+            let here = observer_position() + ray.direction * t_m;
+            let skipped = min(skip_m(to_map(atmosphere.radius_m, here), altitude_m(ray, t_m), middle), boundary_m - t_m);
+            if skipped > step_m {
+                pass_air(&sum, ray, t_m, t_m + skipped);
+                t_m += skipped;
+                continue;
+            }
+        }
+        let at_m = t_m + offset * step_m;
+        was_empty = !take_step(&sum, ray, &phase, vec2<f32>(at_m, altitude_m(ray, at_m)), step_m);
+        pass_air(&sum, ray, t_m, t_m + step_m);
+        t_m += step_m;
+    }
+    let transmittance = select(exp(-sum.clouds), 0.0, sum.clouds >= opaque);
+    let hidden = max(1.0 - transmittance, 1e-6);
+    textureStore(cloud_radiance_image, pixel.xy, vec4<f32>(sum.radiance, transmittance));
+    textureStore(cloud_air_image, pixel.xy, vec4<f32>(sum.left + transmittance * exp(-sum.air), sum.weighted_m / hidden));
+}

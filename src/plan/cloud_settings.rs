@@ -1,0 +1,74 @@
+//! What a quality means for clouds.
+
+use super::Quality;
+
+/// How light that is scattered more than once is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum CloudScattering {
+    /// Not at all: each photon is scattered once.
+    Single,
+    /// Octaves with halved strength, extinction and asymmetry, attenuated along the light's path alone, as engines ship
+    /// them (Wrenninge 2013), eight of them.
+    OctavesAsShipped,
+    /// Four octaves with fitted factors, attenuated along both paths.
+    OctavesFitted,
+}
+
+/// Everything that trades accuracy for time in clouds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct CloudSettings {
+    /// Multiple scattering.
+    pub scattering: CloudScattering,
+    /// Shortest step along a ray, m.
+    pub step_m: u32,
+    /// Growth of steps with distance, m per km.
+    pub step_permille: u32,
+    /// Most steps along a ray.
+    pub max_steps: u32,
+    /// Columns and rows of each grid of light.
+    pub grid_size: u32,
+    /// Slices of each layer of clouds.
+    pub grid_slices: u32,
+    /// Nested grids, each four times as wide as the one inside it.
+    pub grid_levels: u32,
+    /// Width of the innermost grid's cells, m.
+    pub cell_m: u32,
+}
+
+impl CloudSettings {
+    /// The preset of a quality.
+    pub fn of(quality: Quality) -> Self {
+        let medium = Self {
+            scattering: CloudScattering::OctavesFitted,
+            step_m: 15,
+            step_permille: 5,
+            max_steps: 384,
+            grid_size: 96,
+            grid_slices: 12,
+            grid_levels: 3,
+            cell_m: 100,
+        };
+        match quality {
+            Quality::Low => Self {
+                step_m: 30,
+                step_permille: 10,
+                max_steps: 192,
+                grid_size: 64,
+                grid_slices: 8,
+                cell_m: 150,
+                ..medium
+            },
+            Quality::Medium => medium,
+            Quality::High => Self { step_m: 10, step_permille: 3, max_steps: 640, grid_slices: 16, ..medium },
+            Quality::Ultra => Self {
+                step_m: 5,
+                step_permille: 2,
+                max_steps: 1280,
+                grid_size: 128,
+                grid_slices: 24,
+                cell_m: 60,
+                ..medium
+            },
+        }
+    }
+}

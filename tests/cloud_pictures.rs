@@ -1,0 +1,133 @@
+//! Clouds in real time: the field that the reference sees, finite wherever one looks from.
+
+mod common;
+
+use std::path::Path;
+
+use glam::DVec3;
+use welkin::gpu::{DeviceRequest, Validation};
+use welkin::plan::{CloudSettings, Decision, Outputs, Plan, Quality, Settings};
+use welkin::reference::{World, transport};
+use welkin::renderer::{Rendered, Renderer};
+use welkin::scene::Scene;
+
+const CAPTURE: Outputs = Outputs { capture: true, picture: false };
+
+fn scene(text: &str) -> Scene {
+    let rest = "preset = \"earth\"\ncamera = { altitude_m = 2, elevation_deg = 25, azimuth_deg = 0, width = 40, height = 24 }\n";
+    Scene::parse(&format!("{rest}{text}"), Path::new("clouds.toml")).unwrap()
+}
+
+fn day(clouds: &str) -> Scene {
+    scene(&format!("sun = {{ elevation_deg = 35, azimuth_deg = 200 }}\n{clouds}"))
+}
+
+/// Coarse, so that the tests are quick.
+fn settings() -> Settings {
+    let clouds = CloudSettings { grid_size: 32, grid_slices: 6, grid_levels: 2, ..CloudSettings::of(Quality::Low) };
+    Settings { clouds, ..Settings::of(Quality::Low) }
+}
+
+fn render(scenes: &[Scene], settings: Settings) -> Vec<Rendered> {
+    let _alone = common::alone();
+    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
+    let mut renderer = Renderer::new(&request).unwrap();
+    let log = renderer.gpu().validation_log();
+    let rendered = scenes.iter().map(|scene| renderer.render(scene, settings, CAPTURE).unwrap()).collect();
+    drop(renderer);
+    assert!(log.messages().is_empty(), "{:?}", log.messages());
+    rendered
+}
+
+fn cloud_passes(plan: &Plan) -> Vec<(Decision, u64)> {
+    let ours = plan.passes.iter().filter(|pass| pass.name.starts_with("cloud"));
+    ours.map(|pass| (pass.decision, pass.bytes)).collect()
+}
+
+#[test]
+fn a_scene_without_clouds_runs_no_pass_of_theirs_and_keeps_no_byte() {
+    let nothing = "[[clouds]]\nkind = \"cumulus\"\ncoverage = 0\n[[clouds]]\nkind = \"cirrus\"\ntop_m = 8500\n";
+    for scene in [day(""), day(nothing)] {
+        let passes = cloud_passes(&Renderer::plan(&scene, settings(), CAPTURE).unwrap());
+        assert!(passes.len() >= 7 && passes.iter().all(|pass| *pass == (Decision::Skip, 0)), "{passes:?}");
+    }
+    let cloudy = cloud_passes(&Renderer::plan(&day("[[clouds]]\nkind = \"cumulus\"\n"), settings(), CAPTURE).unwrap());
+    assert!(cloudy.iter().all(|(decision, bytes)| *decision == Decision::Run && *bytes > 0), "{cloudy:?}");
+}
+
+#[test]
+fn wind_moves_clouds_without_making_their_noise_anew_and_a_turned_camera_keeps_their_light() {
+    let mut still = day("[[clouds]]\nkind = \"cumulus\"\nwind_m_per_s = [10, 0]\n");
+    still.time_s = 60.0;
+    let mut moved = still.clone();
+    moved.time_s = 90.0;
+    let mut turned = moved.clone();
+    turned.camera.direction.azimuth_rad += 0.1;
+    let frames = render(&[still, moved, turned], settings());
+    let decision = |frame: usize, name: &str| frames[frame].timings.plan.decision(name).unwrap();
+    for noise in ["cloud_shape", "cloud_erosion", "cloud_weather", "cloud_bounds"] {
+        assert_eq!(decision(1, noise), Decision::Reuse);
+    }
+    assert_eq!((decision(1, "cloud_density"), decision(1, "cloud_light")), (Decision::Run, Decision::Run));
+    assert_eq!((decision(2, "cloud_light"), decision(2, "clouds")), (Decision::Reuse, Decision::Run));
+    assert_ne!(frames[0].frame.radiance, frames[1].frame.radiance);
+}
+
+/// Root mean square over the picture of the difference in transmittance to the reference's.
+fn transmittance_error(rendered: &Rendered, scene: &Scene) -> f64 {
+    let world = World::from_scene(scene);
+    let camera = &scene.camera;
+    let mut sum = 0.0;
+    for (i, found) in rendered.frame.transmittance.iter().enumerate() {
+        let (x, y) = (i as u32 % camera.width, i as u32 / camera.width);
+        let direction = camera.direction_through(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let truth = transport::transmittance(&world, DVec3::new(0.0, 0.0, camera.altitude_m), direction);
+        sum += (f64::from(found[1]) - truth[1]).powi(2);
+    }
+    (sum / rendered.frame.transmittance.len() as f64).sqrt()
+}
+
+#[test]
+fn what_clouds_let_through_is_what_the_references_clouds_let_through() {
+    let scene = day("[[clouds]]\nkind = \"stratocumulus\"\nwater_g_per_m3 = 0.03\nseed = 4\n");
+    let settings = Settings { clouds: CloudSettings::of(Quality::High), ..settings() };
+    let rendered = &render(std::slice::from_ref(&scene), settings)[0];
+    let error = transmittance_error(rendered, &scene);
+    // A step of 10 m with its sample anywhere in it, through edges of 5e-3 /m and a few dozen metres.
+    assert!(error < 0.02, "{error}");
+    // Negative control: other clouds.
+    let mut other = scene.clone();
+    other.clouds[0].seed = 5;
+    assert!(transmittance_error(rendered, &other) > 0.1);
+}
+
+#[test]
+fn hard_cases_are_finite() {
+    let low = "[[clouds]]\nkind = \"cumulus\"\n";
+    let at = |altitude_m: f64, elevation_deg: f64, mut scene: Scene| {
+        scene.camera.altitude_m = altitude_m;
+        scene.camera.direction.elevation_rad = elevation_deg.to_radians();
+        scene
+    };
+    let set = scene(&format!("sun = {{ elevation_deg = -2, azimuth_deg = 0 }}\n{low}"));
+    let scenes = [
+        at(1000.0, 0.0, day(low)),
+        at(2300.0, -5.0, day(low)),
+        day("[[clouds]]\nkind = \"stratus\"\ncoverage = 1\n"),
+        // 1.5 * 66.7e-3 / (1000 * 1e-5) = 10 /m.
+        at(
+            1100.0,
+            10.0,
+            day("[[clouds]]\nkind = \"stratocumulus\"\nwater_g_per_m3 = 66.7\neffective_radius_um = 10\n"),
+        ),
+        // The sun below the horizon of the ground, above that of an aircraft over the clouds.
+        at(11_000.0, -3.0, set),
+        at(300_000.0, -17.0, day("[[clouds]]\nkind = \"cumulonimbus\"\n[[clouds]]\nkind = \"cirrus\"\n")),
+        at(0.0, 90.0, day("[[clouds]]\nkind = \"congestus\"\ntop_m = 901\n")),
+    ];
+    for (scene, rendered) in scenes.iter().zip(render(&scenes, settings())) {
+        let values = rendered.frame.radiance.iter().chain(&rendered.frame.transmittance).flatten();
+        assert!(values.clone().all(|v| v.is_finite() && *v >= 0.0), "{:?}", scene.clouds);
+        assert!(values.clone().any(|v| *v > 0.0));
+    }
+}
