@@ -49,6 +49,50 @@ fn fluxes_match_the_discrete_ordinate_table() {
 }
 
 #[test]
+fn transmittance_of_thick_slabs_is_resolved_however_little_comes_through() {
+    // Rows from 0.4 down to 1e-6 of the light, and two where the table's eight decimals show nothing.
+    let thick = |r: &Row| r.number("tau") > 10.0;
+    for row in tables::read("slab.csv").iter().filter(|r| thick(r)).step_by(7) {
+        let own = slab(row).fluxes(8_192, 3).diffuse_transmittance;
+        let spread = (own.standard_error.powi(2) + 1e-16).sqrt();
+        let label = format!("{}: {own:?}", row.line());
+        assert!((own.value - row.number("T_diffuse")).abs() < 4.5 * spread, "{label}");
+        assert!(own.value > 0.0 && own.standard_error < 0.03 * own.value, "{label}");
+    }
+}
+
+#[test]
+fn light_deep_in_an_absorbing_slab_falls_by_the_diffusion_length() {
+    // Twelve more optical depths cost e^(-12 κ), with the κ of isotropic scattering of albedo 0.9 from Case & Zweifel
+    // 1967: 1 = (W / 2κ) ln((1 + κ) / (1 - κ)).
+    let transmittance = |optical_thickness, albedo| {
+        let slab = Slab { optical_thickness, albedo, phase: PhaseFunction::Isotropic, mu0: 1.0, surface_albedo: 0.0 };
+        slab.fluxes(32_768, 1).diffuse_transmittance
+    };
+    let (thin, thick) = (transmittance(40.0, 0.9), transmittance(52.0, 0.9));
+    assert!(thick.value < 1e-11 && thick.standard_error < 0.01 * thick.value, "{thick:?}");
+    let kappa = (thin.value / thick.value).ln() / 12.0;
+    let error = (thin.standard_error / thin.value).hypot(thick.standard_error / thick.value) / 12.0;
+    assert!((kappa - 0.525_429_513).abs() < 4.0 * error, "{kappa} ± {error}");
+    // Control: albedo 0.91 falls more slowly.
+    let other = transmittance(52.0, 0.91);
+    assert!(((thin.value / other.value).ln() / 12.0 - 0.525_429_513).abs() > 4.0 * error);
+}
+
+#[test]
+fn an_error_asked_for_is_reached() {
+    let phase = PhaseFunction::HenyeyGreenstein { g: 0.85 };
+    for (optical_thickness, surface_albedo) in [(0.1, 0.0), (16.0, 0.3)] {
+        let slab = Slab { optical_thickness, albedo: 0.9, phase: phase.clone(), mu0: 0.5, surface_albedo };
+        let own = slab.fluxes_to(0.01, 5);
+        for m in [own.reflectance, own.diffuse_transmittance] {
+            // The error is itself known to 9 %.
+            assert!(m.standard_error < 1.3 * 0.01 * m.value, "{slab:?}: {m:?}");
+        }
+    }
+}
+
+#[test]
 fn a_slab_that_absorbs_one_per_cent_more_is_told_apart() {
     let rows = tables::read("slab.csv");
     let row =

@@ -9,13 +9,9 @@ use welkin::reference::path::{FirstOrderBy, View};
 use welkin::reference::probe::run;
 use welkin::reference::slab::Slab;
 
+use crate::ledger::Ledger;
+use crate::options::Options;
 use crate::tables::{self, Row};
-
-/// Walks of the first round, and the most.
-const WALKS: [u64; 2] = [1 << 14, 1 << 24];
-
-/// Walks for each radiance.
-const RADIANCE_WALKS: u64 = 1 << 17;
 
 struct Score {
     z: f64,
@@ -23,12 +19,12 @@ struct Score {
     line: String,
 }
 
-/// Fluxes of every `every`-th row, with the standard error of reflectance and diffuse transmittance below `error`
-/// of the incident flux and, where they exceed 1 %, of themselves; true when the codes differ.
-pub fn fluxes(every: usize, error: f64) -> bool {
+/// Fluxes of every `every`-th row; true when the codes differ.
+pub fn fluxes(options: &Options) -> Result<bool, String> {
+    let ledger = Ledger::open(options.ledger.as_deref(), &options.identity("slab.csv"))?;
     let mut groups: BTreeMap<String, Vec<Score>> = BTreeMap::new();
-    let start = Instant::now();
-    for row in tables::read("slab.csv").iter().step_by(every) {
+    let mut longest = 0.0_f64;
+    for (i, row) in tables::read("slab.csv").iter().enumerate().step_by(options.every) {
         let slab = Slab {
             optical_thickness: row.number("tau"),
             albedo: row.number("ssa"),
@@ -36,56 +32,58 @@ pub fn fluxes(every: usize, error: f64) -> bool {
             mu0: row.number("mu0"),
             surface_albedo: row.number("surface_albedo"),
         };
-        let mut walks = WALKS[0];
-        let own = loop {
-            let own = slab.fluxes(walks, 11 + walks);
-            let excess = |m: welkin::reference::slab::Measured| m.standard_error / (error * m.value.max(0.01));
-            let excess = excess(own.reflectance).max(excess(own.diffuse_transmittance));
-            if excess <= 1.0 || walks >= WALKS[1] {
-                break own;
-            }
-            walks = ((walks as f64 * (1.2 * excess).powi(2)) as u64).clamp(2 * walks, WALKS[1]);
-        };
+        let found = ledger.answer(&format!("{slab:?}"), || {
+            let start = Instant::now();
+            let own = slab.fluxes_to(options.error, options.seed << 32 | i as u64);
+            let measured = [own.reflectance, own.diffuse_transmittance, own.absorbed, own.balance];
+            let numbers = measured.into_iter().flat_map(|m| [m.value, m.standard_error]);
+            numbers.chain([start.elapsed().as_secs_f64()]).collect()
+        });
+        longest = longest.max(found[8]);
         let group = groups.entry(format!("tau {:>4}", row.text("tau"))).or_default();
-        for (column, m) in
-            [("R_diffuse", own.reflectance), ("T_diffuse", own.diffuse_transmittance), ("absorbed", own.absorbed)]
-        {
-            group.push(score(row, column, m.value, m.standard_error, 1e-7));
+        for (column, at) in [("R_diffuse", 0), ("T_diffuse", 2), ("absorbed", 4)] {
+            // The table has eight decimals.
+            group.push(score(row, column, found[at], found[at + 1], 1e-7));
         }
-        let scatter = own.balance;
-        let z = (scatter.value - 1.0) / scatter.standard_error.max(1e-13);
-        group.push(Score { z, relative_error: scatter.standard_error, line: format!("balance {slab:?}: {scatter:?}") });
+        let z = (found[6] - 1.0) / found[7].max(1e-13);
+        group.push(Score {
+            z,
+            relative_error: found[7],
+            line: format!("balance {slab:?}: {} ± {:e}", found[6], found[7]),
+        });
     }
-    println!("{:.1} s", start.elapsed().as_secs_f64());
-    report(groups)
+    println!("longest {longest:.1} s");
+    Ok(report(groups))
 }
 
-/// Radiances of every `every`-th row by the path tracer, with a fixed number of walks; true when the codes differ.
-/// Light that has crossed many optical depths is left out: where the error stays above 2 %.
-pub fn radiances(every: usize) -> bool {
+/// Radiances of every `every`-th row by the path tracer; true when the codes differ.
+pub fn radiances(options: &Options) -> Result<bool, String> {
+    let ledger = Ledger::open(options.ledger.as_deref(), &options.identity("slab_radiance.csv"))?;
     let mut groups: BTreeMap<String, Vec<Score>> = BTreeMap::new();
-    let start = Instant::now();
-    let mut unresolved = 0;
-    for (i, row) in tables::read("slab_radiance.csv").iter().enumerate().step_by(every) {
-        let phase = tables::phase(row.text("phase"));
-        let world = tables::slab_world(row.number("tau"), row.number("ssa"), phase, row.number("mu0"), 0.0);
-        let (position, direction) = tables::slab_ray(row);
-        let view = View::new(&world, position, direction, FirstOrderBy::Quadrature);
-        let estimate = run(&view, Effort::Walks(RADIANCE_WALKS), Orders::All, 1, i as u64);
-        let (value, own_error) = (estimate.mean.total()[0], estimate.total_error[0]);
-        if own_error > 0.02 * value {
-            unresolved += 1;
-            continue;
-        }
+    let mut longest = 0.0_f64;
+    for (i, row) in tables::read("slab_radiance.csv").iter().enumerate().step_by(options.every) {
+        let found = ledger.answer(&row.line(), || {
+            let start = Instant::now();
+            let (value, error) = radiance(row, options.error, options.seed << 32 | i as u64);
+            vec![value, error, start.elapsed().as_secs_f64()]
+        });
+        longest = longest.max(found[2]);
         // The table claims 1e-4 for most rows and 1e-3 at worst.
         let accuracy = 3e-4 * row.number("radiance");
-        groups
-            .entry(format!("tau {:>4}", row.text("tau")))
-            .or_default()
-            .push(score(row, "radiance", value, own_error, accuracy));
+        let group = groups.entry(format!("tau {:>4}", row.text("tau"))).or_default();
+        group.push(score(row, "radiance", found[0], found[1], accuracy));
     }
-    println!("{:.1} s; {unresolved} rows left out", start.elapsed().as_secs_f64());
-    report(groups)
+    println!("longest {longest:.1} s");
+    Ok(report(groups))
+}
+
+fn radiance(row: &Row, error: f64, seed: u64) -> (f64, f64) {
+    let phase = tables::phase(row.text("phase"));
+    let world = tables::slab_world(row.number("tau"), row.number("ssa"), phase, row.number("mu0"), 0.0);
+    let (position, direction) = tables::slab_ray(row);
+    let view = View::new(&world, position, direction, FirstOrderBy::Quadrature);
+    let estimate = run(&view, Effort::RelativeError(error), Orders::All, seed, 0);
+    (estimate.mean.total()[0], estimate.total_error[0])
 }
 
 fn score(row: &Row, column: &str, value: f64, own_error: f64, accuracy: f64) -> Score {
@@ -109,6 +107,13 @@ fn report(groups: BTreeMap<String, Vec<Score>>) -> bool {
         println!("{name} {:8} {mean:7.2} {rms:6.2} {max:6.2}  {median:.3} ({most:.2})", scores.len());
         all.extend(scores);
     }
+    let n = all.len() as f64;
+    let beyond = all.iter().filter(|s| s.z.abs() > 3.0).count();
+    let chi_square = all.iter().map(|s| s.z * s.z).sum::<f64>() / n;
+    println!(
+        "all {n}: chi-square / number {chi_square:.3}; beyond 3: {beyond}, of which chance explains {:.1}",
+        0.0027 * n
+    );
     all.sort_by(|a, b| b.z.abs().total_cmp(&a.z.abs()));
     println!("worst:");
     all.iter().take(8).for_each(|score| println!("  z {:6.2}  {}", score.z, score.line));

@@ -1,4 +1,4 @@
-//! Numbers on the command line that must be finite and not negative.
+//! Bounds given on the command line.
 
 use std::str::FromStr;
 
@@ -20,4 +20,10 @@ impl FromStr for Limit {
         let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
         number.map(Self).ok_or("expected a finite number, at least 0")
     }
+}
+
+/// A relative error, in ]0, 1[.
+pub fn relative_error(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
+    if value > 0.0 && value < 1.0 { Ok(value) } else { Err(format!("{value} does not lie in ]0, 1[")) }
 }

@@ -14,6 +14,7 @@ mod reference;
 mod render;
 mod schema;
 mod slab;
+mod solver;
 mod stdout;
 mod watch;
 

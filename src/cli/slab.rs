@@ -1,10 +1,14 @@
 //! `welkin slab`: how much light a homogeneous layer reflects, transmits and absorbs.
 
 use clap::Args;
-use welkin::reference::slab::{Slab, SlabFluxes};
+use welkin::reference::slab::{Measured, Slab, SlabFluxes};
 use welkin_lut::PhaseFunction;
 
+use super::limit::relative_error;
 use super::{Failure, phase_argument, stdout};
+
+/// The seed of the random numbers.
+const SEED: u64 = 0;
 
 /// Measure the reflectance, transmittance and absorption of a homogeneous layer
 ///
@@ -28,9 +32,12 @@ pub struct Arguments {
     /// Reflectance of the surface, from 0 to 1
     #[arg(long, value_name = "A", default_value = "0", value_parser = share, allow_negative_numbers = true)]
     surface_albedo: f64,
-    /// Walks to trace; the standard errors fall with their square root
-    #[arg(long, value_name = "N", default_value = "262144", value_parser = clap::value_parser!(u64).range(1..))]
-    photons: u64,
+    /// Walks to trace, instead of as many as --max-error takes; the standard errors fall with their square root
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "max_error")]
+    photons: Option<u64>,
+    /// Standard error of reflectance and diffuse transmittance to reach, as a share of each
+    #[arg(long, value_name = "E", default_value = "0.003", value_parser = relative_error)]
+    max_error: f64,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -62,9 +69,29 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         mu0: arguments.mu0,
         surface_albedo: arguments.surface_albedo,
     };
-    let fluxes = slab.fluxes(arguments.photons, 0);
+    let fluxes = match arguments.photons {
+        Some(photons) => slab.fluxes(photons, SEED),
+        None => slab.fluxes_to(arguments.max_error, SEED),
+    };
     let text = if arguments.json { json(&fluxes) } else { table(&fluxes) };
-    Ok(stdout::print(&text)?)
+    stdout::print(&text)?;
+    match arguments.photons {
+        Some(_) => Ok(()),
+        None => check(&fluxes, arguments.max_error),
+    }
+}
+
+/// The standard error is itself an estimate, uncertain by 9 %.
+fn check(fluxes: &SlabFluxes, max_error: f64) -> Result<(), Failure> {
+    let named = [("reflectance", fluxes.reflectance), ("diffuse transmittance", fluxes.diffuse_transmittance)];
+    let worse = named.iter().find(|(_, m)| m.standard_error > 1.27 * max_error * m.value);
+    worse.map_or(Ok(()), |(name, m)| {
+        Err(Failure::Check(format!(
+            "the standard error of the {name} is {:.2e} of it after the most steps that one run takes, above the \
+             {max_error} asked for; the results are printed, --photons goes further",
+            m.standard_error / m.value
+        )))
+    })
 }
 
 fn json(fluxes: &SlabFluxes) -> String {
@@ -83,9 +110,7 @@ fn json(fluxes: &SlabFluxes) -> String {
 }
 
 fn table(fluxes: &SlabFluxes) -> String {
-    let line = |name: &str, m: welkin::reference::slab::Measured| {
-        format!("{name:<22} {:.6} ± {:.6}", m.value, m.standard_error)
-    };
+    let line = |name: &str, m: Measured| format!("{name:<22} {:.6} ± {:.6}", m.value, m.standard_error);
     [
         line("reflectance", fluxes.reflectance),
         line("diffuse transmittance", fluxes.diffuse_transmittance),

@@ -31,6 +31,7 @@ pub struct Watch {
     saved: Mutex<Instant>,
     checkpoint: Option<Checkpoint>,
     sampling: Sampling,
+    samples_name: &'static str,
 }
 
 impl Watch {
@@ -39,7 +40,12 @@ impl Watch {
     ///
     /// # Errors
     /// Those of the system's signals.
-    pub fn new(film: &Film, sampling: &Sampling, checkpoint: Option<Checkpoint>) -> io::Result<Self> {
+    pub fn new(
+        film: &Film,
+        sampling: &Sampling,
+        samples_name: &'static str,
+        checkpoint: Option<Checkpoint>,
+    ) -> io::Result<Self> {
         let interrupted = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&interrupted);
         ctrlc::set_handler(move || {
@@ -52,7 +58,7 @@ impl Watch {
         bar.set_position(film.pixels.iter().map(|pixel| pixel.batches).sum());
         bar.reset_eta();
         let saved = Mutex::new(Instant::now());
-        let watch = Self { bar, interrupted, saved, checkpoint, sampling: *sampling };
+        let watch = Self { bar, interrupted, saved, checkpoint, sampling: *sampling, samples_name };
         watch.show(film);
         Ok(watch)
     }
@@ -69,10 +75,11 @@ impl Watch {
             return;
         }
         let (walks, error) = (film.goal * self.sampling.walks_per_batch, film.relative_error());
-        self.bar.set_message(format!("{walks} walks a pixel, relative error {error:.2e}"));
+        let reached = format!("{walks} {} a pixel, relative error {error:.2e}", self.samples_name);
+        self.bar.set_message(reached.clone());
         if self.bar.is_hidden() {
             // Not a terminal: a line for each round, for logs.
-            eprintln!("{walks} walks a pixel, relative error {error:.2e}");
+            eprintln!("{reached}");
         }
     }
 }

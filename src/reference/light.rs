@@ -63,7 +63,7 @@ fn disc_height(radius_rad: f64) -> f64 {
 
 /// Radiance of a disc relative to its mean, at the squared sine of the angle from its centre relative to that of its
 /// limb.
-fn limb_factor(exponent: f64, relative_squared: f64) -> f64 {
+pub(super) fn limb_factor(exponent: f64, relative_squared: f64) -> f64 {
     0.5 * (2.0 + exponent) * (1.0 - relative_squared).max(0.0).powf(0.5 * exponent)
 }
 

@@ -4,31 +4,47 @@
 //! and depth and directions grow it tends to what [`super::path`] finds.
 
 use std::f64::consts::{PI, TAU};
+use std::fmt;
+use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use welkin_lut::Bands;
+use welkin_lut::{BAND_COUNT, Bands};
 
+use super::effort::Effort;
 use super::light::Emitter;
 use super::matter::around;
 use super::random::Draw;
 use super::shape::{End, Span};
-use super::single::{depth_between, in_scattering};
+use super::single::{depth_between, emitted, in_scattering};
 use super::spectrum;
 use super::transport::extinction;
 use super::world::World;
+
+/// Repeats of the first round, from which the number still needed is estimated.
+const PILOT_REPEATS: u64 = 8;
+/// Most repeats, however small the error asked for.
+const MOST_REPEATS: u64 = 1 << 16;
 
 /// How finely and how deeply to march.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct March {
     /// M, directions from which in-scattered light is gathered at each step.
     pub directions: usize,
-    /// Orders of scattering beyond the first.
+    /// Orders of scattering beyond the first; light that matter gives off is scattered so many times at most.
     pub depth: usize,
     /// Largest optical depth of a step: steps shorten where matter is dense.
     pub step_optical_depth: f64,
     /// Fewest steps along a ray, which bound the steps where matter is thin.
     pub fewest_steps: usize,
+}
+
+impl fmt::Display for March {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { directions, depth, step_optical_depth, fewest_steps } = self;
+        write!(f, "{directions} directions, depth {depth}, steps of optical depth {step_optical_depth} and at least ")?;
+        write!(f, "{fewest_steps} of them")
+    }
 }
 
 /// Mean and standard error of repeated marches along one ray.
@@ -43,9 +59,42 @@ pub struct Marched {
 impl March {
     /// Marches `repeats` ≥ 2 times along the ray from `p` along the unit vector `d`, each time in other directions.
     pub fn radiance(&self, world: &World, p: DVec3, d: DVec3, repeats: u64, seed: u64) -> Marched {
-        let once = |repeat| self.gather(world, p, d, self.depth, &mut Draw::new(seed, 0, repeat));
-        let all: Vec<Bands> = (0..repeats).into_par_iter().map(once).collect();
-        let count = repeats as f64;
+        self.repeated(world, p, d, 0..repeats, (seed, 0))
+    }
+
+    /// One march. `draws` selects the random numbers: seed, stream (the number of the ray) and repeat.
+    pub fn once(&self, world: &World, p: DVec3, d: DVec3, draws: [u64; 3]) -> Bands {
+        let [seed, stream, repeat] = draws;
+        self.gather(world, p, d, self.depth, true, &mut Draw::new(seed, stream, repeat))
+    }
+
+    /// Marches until the effort is spent. As many repeats as a relative error takes are estimated from a first round,
+    /// which is thrown away.
+    pub fn estimate(&self, world: &World, p: DVec3, d: DVec3, effort: Effort, draws: (u64, u64)) -> Marched {
+        match effort {
+            Effort::Walks(repeats) => self.repeated(world, p, d, 0..repeats.max(2), draws),
+            Effort::RelativeError(target) => {
+                let pilot = self.repeated(world, p, d, 0..PILOT_REPEATS, draws);
+                let relative = (0..BAND_COUNT).map(|j| match pilot.standard_error[j] {
+                    0.0 => 0.0,
+                    error => error / pilot.radiance[j],
+                });
+                let excess = relative.fold(0.0, f64::max) / target;
+                if excess == 0.0 {
+                    // Nothing is drawn at random.
+                    return pilot;
+                }
+                let wanted = PILOT_REPEATS as f64 * (1.2 * excess).powi(2);
+                let repeats = (wanted.ceil() as u64).clamp(2 * PILOT_REPEATS, MOST_REPEATS);
+                self.repeated(world, p, d, PILOT_REPEATS..PILOT_REPEATS + repeats, draws)
+            }
+        }
+    }
+
+    fn repeated(&self, world: &World, p: DVec3, d: DVec3, repeats: Range<u64>, (seed, stream): (u64, u64)) -> Marched {
+        let count = (repeats.end - repeats.start) as f64;
+        let once = |repeat| self.once(world, p, d, [seed, stream, repeat]);
+        let all: Vec<Bands> = repeats.into_par_iter().map(once).collect();
         let mut radiance = spectrum::ZERO;
         all.iter().for_each(|value| spectrum::accumulate(&mut radiance, 1.0 / count, *value));
         let standard_error = std::array::from_fn(|j| {
@@ -55,9 +104,11 @@ impl March {
         Marched { radiance, standard_error }
     }
 
-    /// Radiance arriving at `p` from `d` after at most `depth` + 1 events.
-    fn gather(&self, world: &World, p: DVec3, d: DVec3, depth: usize, draw: &mut Draw) -> Bands {
-        let Some(span) = world.shape.span(p, d) else { return background(world) };
+    /// Radiance arriving at `p` from `d` after at most `depth` + 1 events; `open` tells whether the surroundings behind
+    /// the medium count.
+    fn gather(&self, world: &World, p: DVec3, d: DVec3, depth: usize, open: bool, draw: &mut Draw) -> Bands {
+        let behind = if open { background(world) } else { spectrum::ZERO };
+        let Some(span) = world.shape.span(p, d) else { return behind };
         let mut radiance = spectrum::ZERO;
         let mut transmittance = spectrum::ONE;
         let mut t = span.start_m;
@@ -73,7 +124,7 @@ impl March {
         }
         let behind = match span.end {
             End::Ground => self.ground(world, p + d * span.end_m, depth, draw),
-            End::Space => background(world),
+            End::Space => behind,
         };
         spectrum::accumulate(&mut radiance, 1.0, spectrum::product(transmittance, behind));
         radiance
@@ -88,9 +139,10 @@ impl March {
         first.min(fits(t_m + first).max(0.1 * first))
     }
 
-    /// What a point sends back along a ray per metre: direct light of every lamp, and light from M directions.
+    /// What a point sends back along a ray per metre: its own light, direct light of every lamp, and light from M
+    /// directions.
     fn source(&self, world: &World, at: DVec3, d: DVec3, depth: usize, draw: &mut Draw) -> Bands {
-        let mut total = spectrum::ZERO;
+        let mut total = emitted(world, at);
         for (direction, irradiance) in direct(world, at, draw) {
             let response = in_scattering(world, at, d.dot(direction).clamp(-1.0, 1.0));
             spectrum::accumulate(&mut total, 1.0, spectrum::product(response, irradiance));
@@ -98,7 +150,8 @@ impl March {
         if depth > 0 {
             for _ in 0..self.directions {
                 let direction = around(DVec3::Z, 1.0 - 2.0 * draw.uniform(), draw.uniform());
-                let arriving = self.scattered(world, at, direction, depth, draw);
+                // The lights themselves and the surroundings are what `direct` covers.
+                let arriving = self.gather(world, at, direction, depth - 1, false, draw);
                 let response = in_scattering(world, at, d.dot(direction).clamp(-1.0, 1.0));
                 spectrum::accumulate(
                     &mut total,
@@ -120,23 +173,13 @@ impl March {
         if depth > 0 {
             for _ in 0..self.directions {
                 let cosine = draw.uniform();
-                let arriving = self.scattered(world, at, around(normal, cosine, draw.uniform()), depth, draw);
+                let direction = around(normal, cosine, draw.uniform());
+                let arriving = self.gather(world, at, direction, depth - 1, false, draw);
                 spectrum::accumulate(&mut irradiance, cosine * TAU / self.directions as f64, arriving);
             }
         }
         spectrum::product(world.ground_albedo, irradiance).map(|e| e / PI)
     }
-
-    /// L_sc: what arrives from a direction without the lamps themselves, which [`direct`] covers.
-    fn scattered(&self, world: &World, at: DVec3, direction: DVec3, depth: usize, draw: &mut Draw) -> Bands {
-        let dark =
-            World { lights: world.lights.iter().filter(|l| !is_background(l)).cloned().collect(), ..world.clone() };
-        self.gather(&dark, at, direction, depth - 1, draw)
-    }
-}
-
-fn is_background(light: &Emitter) -> bool {
-    matches!(light, Emitter::Environment { .. })
 }
 
 /// Radiance of space.

@@ -2,7 +2,8 @@
 //!
 //! It shares the problem with the renderer (scene, medium, phase functions) and nothing of its solution. Three
 //! solvers answer the same questions: [`single`] (a, quadrature of single scattering with an error bound),
-//! [`marching`] (b, recursive Monte Carlo ray marching) and [`path`] (c, an unbiased path tracer).
+//! [`marching`] (b, recursive Monte Carlo ray marching) and [`path`] (c, an unbiased path tracer). [`Solver`] has their
+//! names.
 //!
 //! Walks run against the light, from the camera. Equations are those of Premože 2003, sections 4.1 and 4.2.
 
@@ -10,6 +11,8 @@ mod air;
 pub mod attenuation;
 mod clouds;
 mod column;
+pub mod disc;
+mod effort;
 mod field;
 mod first_event;
 mod grid;
@@ -27,6 +30,7 @@ mod segment;
 mod shape;
 pub mod single;
 pub mod slab;
+mod solver;
 mod spectrum;
 mod spread;
 mod tally;
@@ -34,12 +38,14 @@ pub mod transport;
 mod walk;
 mod world;
 
+pub use effort::Effort;
 pub use field::{Body, DensityField};
 pub use grid::{GridError, GridField};
 pub use light::Emitter;
 pub use matter::Matter;
-pub use probe::{Effort, probe};
+pub use probe::{probe, probe_by};
 pub use quadrature::Integral;
 pub use shape::Shape;
+pub use solver::{Solver, SolverError};
 pub use tally::{ORDER_BINS, Tally};
 pub use world::World;

@@ -4,8 +4,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 use welkin_lut::{BAND_COUNT, Bands};
 
+use super::disc::{first_order_with_discs, is_integrated};
+use super::effort::Effort;
 use super::path::{Budget, Estimate, FirstOrderBy, View};
-use super::single;
+use super::single::emits;
+use super::solver::{Solver, SolverError};
+use super::transport::transmittance;
 use super::world::World;
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Direction, Scene};
@@ -19,16 +23,11 @@ const FEWEST_WALKS: u64 = 128;
 /// Most walks in a batch, however small the error asked for.
 const MOST_WALKS: u64 = 1 << 22;
 
-/// When to stop.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Effort {
-    /// After this many walks for each ray.
-    Walks(u64),
-    /// When one standard error is below this share of the radiance in every band.
-    RelativeError(f64),
-}
+/// Relative error of quadrature.
+const QUADRATURE_ERROR: f64 = 1e-7;
 
-/// Traces rays through a scene. The rays' sun angles place the first directional light; other lights stay.
+/// Traces rays through a scene by the path tracer. The rays' sun angles place the first directional light; other lights
+/// stay.
 pub fn probe(scene: &Scene, rays: &[Ray], orders: Orders, effort: Effort, seed: u64) -> Vec<RayRadiance> {
     probe_world(&World::from_scene(scene), rays, orders, effort, seed)
 }
@@ -39,6 +38,57 @@ pub fn probe_world(world: &World, rays: &[Ray], orders: Orders, effort: Effort, 
     rays.par_iter().enumerate().map(trace).collect()
 }
 
+/// The same by any solver. With all orders the single solver answers what arrives after at most one event; the path
+/// tracer's light of the first order comes from quadrature where [`is_integrated`] holds for all lights.
+///
+/// # Errors
+/// [`SolverError`] where the solver has no answer.
+pub fn probe_by(
+    solver: Solver,
+    scene: &Scene,
+    rays: &[Ray],
+    orders: Orders,
+    effort: Effort,
+    seed: u64,
+) -> Result<Vec<RayRadiance>, SolverError> {
+    let world = World::from_scene(scene);
+    solver.check(&world, orders)?;
+    let answer = |(i, ray): (usize, &Ray)| match solver {
+        Solver::Path => trace(&world, ray, orders, effort, seed, i as u64),
+        Solver::Single => {
+            let (world, position, toward) = placed(&world, ray);
+            quadrature(&world, position, toward, orders)
+        }
+        Solver::Marching(march) => {
+            let (world, position, toward) = placed(&world, ray);
+            let marched = march.estimate(&world, position, toward, effort, (seed, i as u64));
+            RayRadiance {
+                radiance: marched.radiance,
+                transmittance: transmittance(&world, position, toward),
+                standard_error: marched.standard_error,
+            }
+        }
+    };
+    Ok(rays.par_iter().enumerate().map(answer).collect())
+}
+
+/// The world under the ray's sun, and the ray in it.
+fn placed(world: &World, ray: &Ray) -> (World, DVec3, DVec3) {
+    let world = world.with_sun(direction(ray.sun_zenith_rad, ray.sun_azimuth_rad));
+    let toward = direction(ray.view_zenith_rad, ray.view_azimuth_rad);
+    (world, DVec3::new(0.0, 0.0, ray.altitude_m.max(0.0)), toward)
+}
+
+/// What arrives after at most one event, or after exactly one in the medium.
+fn quadrature(world: &World, position: DVec3, toward: DVec3, orders: Orders) -> RayRadiance {
+    let first = first_order_with_discs(world, position, toward, QUADRATURE_ERROR);
+    let radiance = match orders {
+        Orders::Single => first.single.value,
+        Orders::All => first.total(),
+    };
+    RayRadiance { radiance, transmittance: first.transmittance, standard_error: [0.0; BAND_COUNT] }
+}
+
 /// The unit vector for angles from the zenith and clockwise from north.
 pub fn direction(zenith_rad: f64, azimuth_rad: f64) -> DVec3 {
     let elevation_rad = std::f64::consts::FRAC_PI_2 - zenith_rad;
@@ -46,16 +96,10 @@ pub fn direction(zenith_rad: f64, azimuth_rad: f64) -> DVec3 {
 }
 
 fn trace(world: &World, ray: &Ray, orders: Orders, effort: Effort, seed: u64, stream: u64) -> RayRadiance {
-    let world = world.with_sun(direction(ray.sun_zenith_rad, ray.sun_azimuth_rad));
-    let position = DVec3::new(0.0, 0.0, ray.altitude_m.max(0.0));
-    let toward = direction(ray.view_zenith_rad, ray.view_azimuth_rad);
-    if orders == Orders::Single && world.lights.iter().all(single::is_covered) && !single::emits(&world) {
-        let first = single::first_order(&world, position, toward, 1e-7);
-        return RayRadiance {
-            radiance: first.single.value,
-            transmittance: first.transmittance,
-            standard_error: [0.0; BAND_COUNT],
-        };
+    let (world, position, toward) = placed(world, ray);
+    // Through clouds walks are quicker than quadrature under every part of a disc; emitted light is a light as well.
+    if orders == Orders::Single && world.lights.iter().all(is_integrated) && world.bodies.is_empty() && !emits(&world) {
+        return quadrature(&world, position, toward, orders);
     }
     let view = View::new(&world, position, toward, FirstOrderBy::Quadrature);
     let estimate = run(&view, effort, orders, seed, stream);

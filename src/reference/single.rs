@@ -26,6 +26,13 @@ pub struct FirstOrder {
     pub transmittance: Bands,
 }
 
+impl FirstOrder {
+    /// All of it: what arrives after at most one event.
+    pub fn total(&self) -> Bands {
+        std::array::from_fn(|j| self.single.value[j] + self.ground[j] + self.unscattered[j])
+    }
+}
+
 /// Whether [`first_order`] covers a light; the others have an extent and are sampled.
 pub fn is_covered(light: &Emitter) -> bool {
     matches!(light, Emitter::Beam { .. } | Emitter::Point { .. })
@@ -120,13 +127,18 @@ pub fn in_scattering(world: &World, at: DVec3, cos_theta: f64) -> Bands {
     total
 }
 
-fn emission(world: &World, p: DVec3, d: DVec3, span: &Span, t_m: f64) -> Bands {
-    let at = p + d * t_m;
+/// a L_e of everything at a point, W·m⁻²·sr⁻¹·nm⁻¹ per m.
+pub fn emitted(world: &World, at: DVec3) -> Bands {
     let mut density = Vec::new();
     let mut total = world.air.local(world.shape.altitude(at), &mut density).emission();
     for body in world.bodies.iter() {
         spectrum::accumulate(&mut total, body.field.density(at), body.matter[0].emission_per_m);
     }
+    total
+}
+
+fn emission(world: &World, p: DVec3, d: DVec3, span: &Span, t_m: f64) -> Bands {
+    let total = emitted(world, p + d * t_m);
     let depth = depth_between(world, p, d, span.start_m, t_m);
     spectrum::product(total, spectrum::attenuation(depth))
 }

@@ -9,11 +9,12 @@ use clap::{Args, ValueEnum};
 use welkin::output::AtomicFile;
 use welkin::plan::{Quality, Settings};
 use welkin::probe::{Orders, Ray, RayRadiance};
-use welkin::reference::{self, Effort};
+use welkin::reference::{self, Effort, Solver};
 use welkin::scene::Scene;
 
 use super::Failure;
 use super::backend::{Backend, failure, open_renderer};
+use super::solver::{SolverArguments, check_sampling};
 use table::RayTable;
 
 /// Share of the radiance that one standard error may be where `--samples` is not given.
@@ -43,12 +44,14 @@ pub struct Arguments {
     /// The gpu backend's device, by a part of its name or its index
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
-    /// Walks of the reference backend for each ray; by default as many as bring one standard error to 0.5 %
+    /// Walks (or marches) of the reference backend for each ray; by default as many as bring one standard error to 0.5 %
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     samples: Option<u64>,
     /// Which orders of scattering count
     #[arg(long, value_enum, default_value = "all")]
     orders: OrdersArgument,
+    #[command(flatten)]
+    solver: SolverArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -61,19 +64,23 @@ enum OrdersArgument {
 
 /// Reads the rays, traces them and writes the result.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    arguments.backend.check_options(&[
+    let mut options = vec![
         ("--quality", Backend::Gpu, arguments.quality.is_some()),
         ("--device", Backend::Gpu, arguments.device.is_some()),
         ("--samples", Backend::Reference, arguments.samples.is_some()),
-    ])?;
+    ];
+    options.extend(arguments.solver.options());
+    arguments.backend.check_options(&options)?;
+    let solver = arguments.solver.solver()?;
+    check_sampling(&solver, &[("--samples", arguments.samples.is_some())])?;
     let scene = Scene::read(&arguments.scene)?;
     let table = RayTable::read(&arguments.rays, scene.planet.radius_m)?;
     let out = AtomicFile::create(&arguments.out)?;
-    let answers = trace(arguments, &scene, table.rays())?;
+    let answers = trace(arguments, solver, &scene, table.rays())?;
     Ok(out.write_all(&table.with_answers(&answers)?)?)
 }
 
-fn trace(arguments: &Arguments, scene: &Scene, rays: &[Ray]) -> Result<Vec<RayRadiance>, Failure> {
+fn trace(arguments: &Arguments, solver: Solver, scene: &Scene, rays: &[Ray]) -> Result<Vec<RayRadiance>, Failure> {
     let orders = match arguments.orders {
         OrdersArgument::All => Orders::All,
         OrdersArgument::Single => Orders::Single,
@@ -86,7 +93,9 @@ fn trace(arguments: &Arguments, scene: &Scene, rays: &[Ray]) -> Result<Vec<RayRa
         }
         Backend::Reference => {
             let effort = arguments.samples.map_or(Effort::RelativeError(RELATIVE_ERROR), Effort::Walks);
-            Ok(reference::probe(scene, rays, orders, effort, 0))
+            let answers = reference::probe_by(solver, scene, rays, orders, effort, 0)?;
+            eprintln!("solver: {solver}");
+            Ok(answers)
         }
     }
 }

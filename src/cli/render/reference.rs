@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use welkin::output::display;
 use welkin::plan::Outputs;
+use welkin::reference::Solver;
 use welkin::reference::picture::{CameraView, Film, Outcome, Sampling, Shard, expose};
 use welkin::scene::Scene;
 
@@ -16,9 +17,9 @@ const SEED: u64 = 0;
 
 pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<Rendered, Failure> {
     let sampling = Sampling::new(arguments.samples, None);
-    let view = CameraView::new(scene, SEED, sampling.walks_per_batch);
+    let view = CameraView::new(scene, Solver::Path, SEED, sampling.walks_per_batch)?;
     let mut film = Film::new(Shard::WHOLE, view.pixels());
-    let watch = Watch::new(&film, &sampling, None)?;
+    let watch = Watch::new(&film, &sampling, Solver::Path.samples_name(), None)?;
     let started = Instant::now();
     if expose(&&view, &mut film, &sampling.stop(), &watch)? == Outcome::Interrupted {
         return Err(Failure::Interrupted(None));
@@ -41,6 +42,7 @@ pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<
             serde_json::json!({
                 "scene": name,
                 "backend": "reference",
+                "solver": Solver::Path.name(),
                 "walks_per_pixel": walks,
                 "seconds": seconds,
                 "relative_error": error,

@@ -1,4 +1,4 @@
-//! A scene through its camera, pixel by pixel, for the path tracer.
+//! A scene through its camera, pixel by pixel, for any solver.
 
 use glam::DVec3;
 use welkin_lut::{BAND_COUNT, Bands};
@@ -6,14 +6,20 @@ use welkin_lut::{BAND_COUNT, Bands};
 use super::exposure::Subject;
 use super::film::Film;
 use crate::frame::Frame;
+use crate::probe::Orders;
+use crate::reference::disc::first_order_with_discs;
+use crate::reference::marching::March;
 use crate::reference::path::{Budget, FirstOrderBy, View};
 use crate::reference::shape::End;
+use crate::reference::solver::{Solver, SolverError};
 use crate::reference::transport;
 use crate::reference::world::World;
 use crate::scene::{Camera, Scene};
 
 /// Rays across a pixel, in each direction, over which a light's disc is averaged.
 const DISC_RAYS: u32 = 8;
+/// Relative error of quadrature.
+const QUADRATURE_ERROR: f64 = 1e-6;
 
 /// What the camera of a scene sees. The radiance of a pixel is that of the ray through its centre; only the discs of
 /// lights are averaged over the pixel.
@@ -21,14 +27,20 @@ const DISC_RAYS: u32 = 8;
 pub struct CameraView {
     world: World,
     camera: Camera,
+    solver: Solver,
     seed: u64,
     walks_per_batch: u64,
 }
 
 impl CameraView {
-    /// Prepares a scene for pictures with a seed and so many walks in a batch.
-    pub fn new(scene: &Scene, seed: u64, walks_per_batch: u64) -> Self {
-        Self { world: World::from_scene(scene), camera: scene.camera, seed, walks_per_batch }
+    /// Prepares a scene for pictures by a solver with a seed and so many walks (or marches) in a batch.
+    ///
+    /// # Errors
+    /// [`SolverError`] where the solver has no answer for the scene's lights.
+    pub fn new(scene: &Scene, solver: Solver, seed: u64, walks_per_batch: u64) -> Result<Self, SolverError> {
+        let world = World::from_scene(scene);
+        solver.check(&world, Orders::All)?;
+        Ok(Self { world, camera: scene.camera, solver, seed, walks_per_batch })
     }
 
     /// Pixels of the whole picture.
@@ -88,26 +100,55 @@ impl CameraView {
 
 /// A pixel's ray.
 pub struct PixelRay<'a> {
-    view: View<'a>,
-    pixel: usize,
+    prepared: Prepared<'a>,
+    pixel: u64,
+}
+
+/// What a solver keeps of a ray.
+enum Prepared<'a> {
+    Quadrature(Bands),
+    March(March, DVec3),
+    Walks(Box<View<'a>>),
 }
 
 impl<'a> Subject for &'a CameraView {
     type Ray = PixelRay<'a>;
 
     fn ray(&self, pixel: usize) -> PixelRay<'a> {
-        let direction = self.direction(pixel, 0.0, 0.0);
-        PixelRay { view: View::new(&self.world, self.position(), direction, FirstOrderBy::Quadrature), pixel }
+        let (position, direction) = (self.position(), self.direction(pixel, 0.0, 0.0));
+        let prepared = match self.solver {
+            Solver::Single => {
+                Prepared::Quadrature(first_order_with_discs(&self.world, position, direction, QUADRATURE_ERROR).total())
+            }
+            Solver::Marching(march) => Prepared::March(march, direction),
+            Solver::Path => {
+                Prepared::Walks(Box::new(View::new(&self.world, position, direction, FirstOrderBy::Quadrature)))
+            }
+        };
+        PixelRay { prepared, pixel: pixel as u64 }
     }
 
     fn batch(&self, ray: &PixelRay<'a>, batch: u64) -> Bands {
-        let budget = Budget {
-            batches: 1,
-            walks_per_batch: self.walks_per_batch,
-            seed: self.seed,
-            stream: ray.pixel as u64,
-            first_batch: batch,
-        };
-        ray.view.batch(&budget, batch).total()
+        match &ray.prepared {
+            Prepared::Quadrature(radiance) => *radiance,
+            Prepared::March(march, direction) => {
+                let mut mean = [0.0; BAND_COUNT];
+                for repeat in batch * self.walks_per_batch..(batch + 1) * self.walks_per_batch {
+                    let once = march.once(&self.world, self.position(), *direction, [self.seed, ray.pixel, repeat]);
+                    (0..BAND_COUNT).for_each(|j| mean[j] += once[j] / self.walks_per_batch as f64);
+                }
+                mean
+            }
+            Prepared::Walks(view) => {
+                let budget = Budget {
+                    batches: 1,
+                    walks_per_batch: self.walks_per_batch,
+                    seed: self.seed,
+                    stream: ray.pixel,
+                    first_batch: batch,
+                };
+                view.batch(&budget, batch).total()
+            }
+        }
     }
 }

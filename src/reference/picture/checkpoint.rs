@@ -110,6 +110,7 @@ mod tests {
             scene: "noon".into(),
             fingerprint: Fingerprint::of("noon"),
             version: "1".into(),
+            solver: "path".into(),
             seed: 7,
             walks_per_batch: 16,
             most_walks: 256,

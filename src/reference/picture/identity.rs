@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::film::Shard;
 use super::sampling::Sampling;
+use crate::reference::solver::Solver;
 use crate::scene::Scene;
 
 /// Everything that decides about the bits of a picture.
@@ -15,6 +16,8 @@ pub struct Identity {
     pub fingerprint: Fingerprint,
     /// Version of the program, because a new one may walk differently.
     pub version: String,
+    /// The solver and its settings.
+    pub solver: String,
     /// Seed of the random numbers.
     pub seed: u64,
     /// Walks in a batch.
@@ -54,7 +57,7 @@ impl fmt::Display for Fingerprint {
 
 impl Identity {
     /// Of one part of a scene's picture.
-    pub fn new(scene: &Scene, seed: u64, sampling: &Sampling, shard: Shard) -> Self {
+    pub fn new(scene: &Scene, solver: &Solver, seed: u64, sampling: &Sampling, shard: Shard) -> Self {
         // Debug prints every number so that it reads back as the same bits. Name and display do not touch radiance.
         let problem =
             format!("{:?}", (&scene.planet, &scene.medium, &scene.clouds, scene.time_s, &scene.lights, &scene.camera));
@@ -62,6 +65,7 @@ impl Identity {
             scene: scene.name.clone(),
             fingerprint: Fingerprint::of(&problem),
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            solver: solver.to_string(),
             seed,
             walks_per_batch: sampling.walks_per_batch,
             most_walks: sampling.most_walks(),
@@ -89,8 +93,9 @@ impl Identity {
     pub fn difference(&self, other: &Self) -> Option<String> {
         let scene = |identity: &Self| format!("scene '{}' ({})", identity.scene, identity.fingerprint);
         let size = |identity: &Self| format!("{}x{} pixels", identity.width, identity.height);
-        let texts: [&dyn Fn(&Self) -> String; 5] = [
+        let texts: [&dyn Fn(&Self) -> String; 6] = [
             &size,
+            &|identity| format!("solver {}", identity.solver),
             &|identity| format!("seed {}", identity.seed),
             &|identity| format!("welkin {}", identity.version),
             &|identity| format!("{} walks in a batch", identity.walks_per_batch),
