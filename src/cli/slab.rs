@@ -110,7 +110,10 @@ fn json(fluxes: &SlabFluxes) -> String {
 }
 
 fn table(fluxes: &SlabFluxes) -> String {
-    let line = |name: &str, m: Measured| format!("{name:<22} {:.6} ± {:.6}", m.value, m.standard_error);
+    let line = |name: &str, m: Measured| match m.value {
+        thin if thin > 0.0 && thin < 1e-3 => format!("{name:<22} {thin:.4e} ± {:.1e}", m.standard_error),
+        value => format!("{name:<22} {value:.6} ± {:.6}", m.standard_error),
+    };
     [
         line("reflectance", fluxes.reflectance),
         line("diffuse transmittance", fluxes.diffuse_transmittance),

@@ -83,8 +83,9 @@ impl Slab {
         let transmitted = excess(first.diffuse_transmittance);
         let reflected = excess(first.reflectance);
         let count = |excess: f64, steps: f64| -> u64 {
-            // The error of the error from 64 batches is 9 %; a pilot that has missed the rare walks is worse.
-            let wanted = PILOT_WALKS as f64 * (1.25 * excess).powi(2).max(1.0);
+            // The errors of this round and of the result are themselves uncertain by 9 % each, and a round that has missed
+            // the rare walks by more: with 1.25 in the place of 1.6 one result in fifty was not good enough.
+            let wanted = PILOT_WALKS as f64 * (1.6 * excess).powi(2).max(1.0);
             wanted.min(MOST_STEPS / steps.max(1.0)).max(1.0) as u64
         };
         let mean = |steps: &mut dyn Iterator<Item = f64>| steps.sum::<f64>() / BATCHES as f64;
