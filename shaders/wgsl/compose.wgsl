@@ -5,7 +5,10 @@
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::camera::{camera, view_direction, pixel_angle_rad}
 #import welkin::march::view_ray
-#import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
+#ifdef SPHERE
+#import welkin::lit_sphere::{is_sphere, sphere_radiance}
+#endif
+#import welkin::observer::{light_mu_s, observer, DISC_COUNT, LIGHT_COUNT}
 #import welkin::sky::{air_radiance, emission_radiance, ground_radiance, view_transmittance, SkyDirection}
 
 @group(0) @binding(8) var radiance_image: texture_storage_2d<rgba32float, write>;
@@ -60,6 +63,11 @@ fn disc_radiance(view: vec3<f32>, light: u32) -> vec3<f32> {
     }
     let blur_rad = pixel_angle_rad(view);
     let radius_rad = max(disc.angular_radius_rad, 0.5 * blur_rad);
+#ifdef SPHERE
+    if is_sphere(light) && distance(view, disc.direction) < radius_rad + blur_rad {
+        return sphere_radiance(view, light, radius_rad, blur_rad);
+    }
+#endif
     // The chord keeps the digits that the arc cosine of nu would lose.
     let angle_rad = 2.0 * asin(0.5 * min(distance(view, disc.direction), 2.0));
     let coverage = clamp((radius_rad - angle_rad) / blur_rad + 0.5, 0.0, 1.0);
@@ -97,6 +105,11 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
             behind = disc_radiance(view, light);
         }
         radiance += observer.lights[light].irradiance * (clouds.air * air_radiance(light, direction) + transmittance * behind);
+    }
+    if !relative_to_light(view, 0u).below_horizon {
+        for (var light = LIGHT_COUNT; light < DISC_COUNT; light++) {
+            radiance += observer.lights[light].irradiance * transmittance * disc_radiance(view, light);
+        }
     }
     textureStore(radiance_image, pixel.xy, vec4<f32>(radiance, 1.0));
 #ifdef CAPTURE

@@ -23,7 +23,7 @@ pub const PASS: Pass = Pass {
         writes: &["radiance_image", "transmittance_image", "distance_image"],
         inputs: |facts| {
             let scene = facts.scene;
-            Fingerprint::of(&(&scene.camera, &facts.lights, &scene.planet, facts.outputs.capture))
+            Fingerprint::of(&(&scene.camera, &facts.lights, &facts.faint_discs, &scene.planet, facts.outputs.capture))
         },
         bytes: |facts| {
             let pixels = shape(facts).texels();

@@ -36,7 +36,8 @@ fn need(facts: &Facts) -> Need {
         return Need::NotNeeded(reason);
     }
     if facts.lights.is_empty() {
-        return Need::NotNeeded("no directional light shines".to_owned());
+        let why = if facts.left_out.is_empty() { "no directional light shines" } else { &facts.left_out.join("; ") };
+        return Need::NotNeeded(why.to_owned());
     }
     if facts.scatterers().is_empty() {
         return Need::NotNeeded("no constituent scatters".to_owned());
@@ -46,7 +47,8 @@ fn need(facts: &Facts) -> Need {
         true => String::new(),
         false => format!("; light is averaged over the disc of {}, which stands low", wide.join(", ")),
     };
-    Need::Needed(format!("{}{averaged}", view_optical_depth::seen_from(facts)))
+    let left_out: String = facts.left_out.iter().map(|reason| format!("; {reason}")).collect();
+    Need::Needed(format!("{}{averaged}{left_out}", view_optical_depth::seen_from(facts)))
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {

@@ -5,6 +5,7 @@ use welkin_lut::mapping::SkyViewMapping;
 use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::disc::is_wide;
+use super::faint::{Reach, reach};
 use super::{PlanError, Settings};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, Light, Scene};
@@ -65,6 +66,10 @@ pub struct Facts<'a> {
     pub clouds: Vec<&'a CloudLayer>,
     /// Directional lights that shine.
     pub lights: Vec<&'a DirectionalLight>,
+    /// Directional lights of which only the disc is seen.
+    pub faint_discs: Vec<&'a DirectionalLight>,
+    /// Why lights are in none or only the second of these lists.
+    pub left_out: Vec<String>,
     /// Where the camera stands.
     pub viewpoint: Viewpoint,
 }
@@ -88,6 +93,7 @@ impl<'a> Facts<'a> {
             return Err(PlanError::Unsupported { what });
         }
         let camera = &scene.camera;
+        let sorted = sort_lights(&shining_lights(scene)?, scene);
         Ok(Self {
             scene,
             settings,
@@ -97,7 +103,9 @@ impl<'a> Facts<'a> {
             constituents,
             emitters,
             clouds,
-            lights: shining_lights(scene)?,
+            lights: sorted.lit,
+            faint_discs: sorted.faint_discs,
+            left_out: sorted.left_out,
             viewpoint: match camera.altitude_m {
                 h if h <= scene.planet.atmosphere_height_m => Viewpoint::InAir,
                 _ => Viewpoint::InSpace,
@@ -123,6 +131,11 @@ impl<'a> Facts<'a> {
     /// Whether a directional light shines on air that scatters.
     pub fn is_lit(&self) -> bool {
         !self.scatterers().is_empty() && !self.lights.is_empty()
+    }
+
+    /// Whether some disc is a sphere lit from one side.
+    pub fn has_sphere(&self) -> bool {
+        self.lights.iter().chain(&self.faint_discs).any(|light| light.sphere.is_some())
     }
 
     /// Whether a light's disc is so wide that pixels change when light is averaged over it.
@@ -193,6 +206,29 @@ fn check_supported(constituent: &Constituent) -> Result<(), PlanError> {
         return unsupported("has a tabulated phase function");
     }
     Ok(())
+}
+
+/// Lights by what they reach.
+#[derive(Default)]
+struct SortedLights<'a> {
+    lit: Vec<&'a DirectionalLight>,
+    faint_discs: Vec<&'a DirectionalLight>,
+    left_out: Vec<String>,
+}
+
+fn sort_lights<'a>(shining: &[&'a DirectionalLight], scene: &Scene) -> SortedLights<'a> {
+    let mut sorted = SortedLights::default();
+    for light in shining {
+        match reach(light, shining, &scene.planet, scene.camera.altitude_m.max(0.0)) {
+            Reach::Lit => sorted.lit.push(light),
+            Reach::DiscOnly(reason) => {
+                sorted.faint_discs.push(light);
+                sorted.left_out.push(reason);
+            }
+            Reach::Unseen(reason) => sorted.left_out.push(reason),
+        }
+    }
+    sorted
 }
 
 fn shining_lights(scene: &Scene) -> Result<Vec<&DirectionalLight>, PlanError> {

@@ -4,6 +4,7 @@ mod cloud_settings;
 mod declaration;
 mod disc;
 mod facts;
+mod faint;
 mod settings;
 
 use std::collections::BTreeMap;

@@ -6,7 +6,7 @@ use glam::DVec3;
 use welkin_lut::Bands;
 
 use super::matter::around;
-use crate::scene::Light;
+use crate::scene::{Light, LitSphere};
 
 /// A source outside the medium.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +28,8 @@ pub enum Emitter {
         radius_rad: f64,
         /// k of its radiance, μ^k; see `DirectionalLight::limb_exponent`.
         limb_exponent: Bands,
+        /// Takes the place of the limb's law where it is a sphere lit from one side.
+        sphere: Option<LitSphere>,
     },
     /// A point.
     Point {
@@ -79,6 +81,7 @@ impl Emitter {
                 irradiance: sun.irradiance,
                 radius_rad: sun.angular_radius_rad,
                 limb_exponent: sun.limb_exponent(),
+                sphere: sun.sphere,
             },
             Light::Point(point) => Self::Point { position_m: point.position_m, intensity: point.intensity },
             Light::Environment(sky) => Self::Environment { radiance: sky.radiance },
@@ -112,7 +115,7 @@ impl Emitter {
                 let height = disc_height(radius_rad);
                 let direction = around(toward, 1.0 - u * height, v).normalize();
                 let pdf = 1.0 / (TAU * height);
-                let irradiance = self.disc_radiance_at(u).map(|l| l / pdf);
+                let irradiance = self.disc_radiance(direction).map(|l| l / pdf);
                 LightSample { direction, distance_m: f64::INFINITY, irradiance, pdf_per_sr: Some(pdf) }
             }
             Self::Point { position_m, intensity } => {
@@ -130,9 +133,16 @@ impl Emitter {
         }
     }
 
-    /// Radiance of a disc where 1 - cos of the angle from its centre is `relative_height` times that of its limb.
-    fn disc_radiance_at(&self, relative_height: f64) -> Bands {
-        let Self::Disc { irradiance, radius_rad, limb_exponent, .. } = *self else { return [0.0; 3] };
+    /// Radiance of a disc in a direction within it.
+    fn disc_radiance(&self, direction: DVec3) -> Bands {
+        let Self::Disc { toward, irradiance, radius_rad, limb_exponent, sphere } = *self else { return [0.0; 3] };
+        if let Some(sphere) = sphere {
+            let offset = (direction - direction.dot(toward) * toward) / radius_rad.sin();
+            let profile = sphere.profile(toward, offset.clamp_length_max(1.0));
+            return std::array::from_fn(|band| profile[band] * irradiance[band] / radius_rad.sin().powi(2));
+        }
+        // 1 - cos of the angle from the centre, relative to that of the limb.
+        let relative_height = 0.5 * (direction - toward).length_squared() / disc_height(radius_rad);
         // A uniform disc of radiance L gives π sin²α L on a plane normal to its centre.
         let projected = PI * radius_rad.sin().powi(2);
         std::array::from_fn(|band| limb_factor(limb_exponent[band], relative_height) * irradiance[band] / projected)
@@ -146,7 +156,7 @@ impl Emitter {
             Self::Disc { toward, radius_rad, .. } => {
                 let height = 0.5 * (direction - toward).length_squared();
                 let limb = disc_height(radius_rad);
-                (height <= limb).then(|| (self.disc_radiance_at(height / limb), 1.0 / (TAU * limb)))
+                (height <= limb).then(|| (self.disc_radiance(direction), 1.0 / (TAU * limb)))
             }
             _ => None,
         }

@@ -8,6 +8,7 @@ use welkin_lut::Planet;
 use super::clouds::assemble_clouds;
 use super::file::{CameraFile, DisplayFile, LightsFile, PlanetFile, SceneFile, SunFile, ToneMapFile, WhenFile};
 use super::medium::assemble_medium;
+use super::moon::assemble_moon;
 use super::sun_position::sun_direction;
 use super::{
     Camera, Direction, DirectionalLight, Display, EnvironmentLight, Light, PointLight, Preset, Problem, Scene, ToneMap,
@@ -25,7 +26,9 @@ pub fn assemble(file: &SceneFile, path: &Path) -> Result<Scene, Problem> {
     let directory = path.parent().unwrap_or(Path::new(""));
     let clouds = assemble_clouds(&file.clouds, planet.atmosphere_height_m, directory)?;
     let time_s = file.time_s.map_or(0.0, |time| time.get());
-    let mut lights = vec![Light::Directional(assemble_sun(&file.sun, file.preset)?)];
+    let sun = assemble_sun(&file.sun, file.preset)?;
+    let moon = file.moon.as_ref().map(|moon| assemble_moon(moon, &file.sun, &sun, file.preset)).transpose()?;
+    let mut lights: Vec<_> = [sun].into_iter().chain(moon).map(Light::Directional).collect();
     add_lights(&file.light, &mut lights)?;
     let camera = assemble_camera(&file.camera);
     if camera.altitude_m <= -planet.radius_m {
@@ -69,6 +72,7 @@ fn assemble_sun(file: &SunFile, preset: Preset) -> Result<DirectionalLight, Prob
         irradiance: file.irradiance.as_ref().map_or(default.irradiance, |irradiance| irradiance.get()),
         angular_radius_rad: angular_radius_rad.unwrap_or(default.angular_radius_rad),
         limb_darkening: file.limb_darkening.unwrap_or(default.limb_darkening),
+        sphere: None,
     })
 }
 
@@ -89,7 +93,11 @@ fn direction(elevation_deg: f64, azimuth_deg: f64) -> Direction {
 }
 
 fn add_lights(file: &LightsFile, lights: &mut Vec<Light>) -> Result<(), Problem> {
-    let mut names = vec!["sun".to_owned()];
+    let own = lights.iter().filter_map(|light| match light {
+        Light::Directional(light) => Some(light.name.clone()),
+        _ => None,
+    });
+    let mut names: Vec<_> = own.collect();
     let mut claim = |field: String, name: &String| {
         if names.contains(name) {
             let message = format!("invalid value: `{name}`, expected a name that no other light has");
@@ -106,6 +114,7 @@ fn add_lights(file: &LightsFile, lights: &mut Vec<Light>) -> Result<(), Problem>
             irradiance: light.irradiance.get(),
             angular_radius_rad: light.angular_radius_deg.map_or(0.0, |radius| radius.get().to_radians()),
             limb_darkening: light.limb_darkening,
+            sphere: None,
         }));
     }
     for (index, light) in file.point.iter().enumerate() {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use welkin_lut::{BAND_COUNT, BAND_WAVELENGTHS_NM, Bands};
 
-use super::Direction;
+use super::{Direction, LitSphere};
 
 /// A source of light outside the medium.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +29,8 @@ pub struct DirectionalLight {
     pub angular_radius_rad: f64,
     /// Whether the disc darkens towards its limb as the sun's does.
     pub limb_darkening: bool,
+    /// Light spread over the disc as over a sphere lit from one side, in place of limb darkening: a moon.
+    pub sphere: Option<LitSphere>,
 }
 
 impl DirectionalLight {

@@ -42,7 +42,8 @@ pub fn sun_direction(
     })
 }
 
-fn julian_date(date_time: Datetime) -> Result<JulianDate, SunPositionError> {
+/// The instant of a date and time with its offset.
+pub(super) fn julian_date(date_time: Datetime) -> Result<JulianDate, SunPositionError> {
     let Datetime { date: Some(date), time: Some(time), offset: Some(offset) } = date_time else {
         return Err(SunPositionError::Incomplete(date_time));
     };

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::vec3;
 use crate::plan::Facts;
-use crate::scene::DirectionalLight;
+use crate::scene::{DirectionalLight, LitSphere};
 
 /// WGSL `DirectionalLight`.
 #[repr(C)]
@@ -36,6 +36,30 @@ pub(super) struct ObserverHeader {
     pub(super) altitude_m: f32,
     pub(super) padding: [f32; 3],
     pub(super) view: SkyViewRangeBlock,
+}
+
+/// What `DirectionalLight` holds besides, with definition SPHERE.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub(super) struct LitSphereBlock {
+    pub(super) toward_source: [f32; 3],
+    pub(super) sphere_scale: f32,
+    pub(super) even_share: [f32; 3],
+    pub(super) padding: f32,
+}
+
+impl LitSphereBlock {
+    /// That of a light without a sphere is all zeros.
+    fn new(light: &DirectionalLight) -> Self {
+        let Some(sphere) = light.sphere else { return Self::zeroed() };
+        let integral = LitSphere::disc_integral(sphere.phase_rad(light.direction.to_vector()));
+        Self {
+            toward_source: sphere.toward_source.as_vec3().to_array(),
+            sphere_scale: (1.0 / integral) as f32,
+            even_share: vec3(sphere.even_share),
+            padding: 0.0,
+        }
+    }
 }
 
 impl DirectionalLightBlock {
@@ -70,10 +94,15 @@ pub fn observer_block(facts: &Facts) -> Vec<u8> {
             snapped_y: mapping.horizontal_y[1] as f32,
         },
     };
-    let mut lights: Vec<_> = facts.lights.iter().map(|light| DirectionalLightBlock::new(facts, light)).collect();
-    lights.resize(
-        facts.light_slots() as usize,
-        DirectionalLightBlock { direction: [0.0, 0.0, 1.0], ..Zeroable::zeroed() },
-    );
-    [bytemuck::bytes_of(&header), bytemuck::cast_slice(&lights)].concat()
+    let dark = DirectionalLightBlock { direction: [0.0, 0.0, 1.0], ..Zeroable::zeroed() };
+    let mut lit: Vec<_> = facts.lights.iter().copied().map(Some).collect();
+    lit.resize(facts.light_slots() as usize, None);
+    let mut bytes = bytemuck::bytes_of(&header).to_vec();
+    for light in lit.into_iter().chain(facts.faint_discs.iter().copied().map(Some)) {
+        bytes.extend(bytemuck::bytes_of(&light.map_or(dark, |light| DirectionalLightBlock::new(facts, light))));
+        if facts.has_sphere() {
+            bytes.extend(bytemuck::bytes_of(&light.map_or(Zeroable::zeroed(), LitSphereBlock::new)));
+        }
+    }
+    bytes
 }

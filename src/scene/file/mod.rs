@@ -3,12 +3,14 @@
 mod clouds;
 mod light;
 mod medium;
+mod moon;
 pub mod number;
 mod per_band;
 
 pub use clouds::CloudFile;
 pub use light::{LightsFile, SunFile, WhenFile};
 pub use medium::{ConstituentChange, ConstituentFile, MediumFile, PhaseFile, ProfileFile};
+pub use moon::MoonFile;
 pub use per_band::PerBand;
 
 use schemars::JsonSchema;
@@ -37,6 +39,8 @@ pub struct SceneFile {
     pub clouds: Vec<CloudFile>,
     /// The sun.
     pub sun: SunFile,
+    /// The moon; by default none shines.
+    pub moon: Option<MoonFile>,
     /// Lights besides the sun.
     #[serde(default)]
     pub light: LightsFile,

@@ -168,6 +168,8 @@ intervals! {
     FieldOfView: Included(0.001), Included(170.0);
     /// A disc's angular radius, degrees.
     AngularRadius: Included(0.0), Included(45.0);
+    /// A phase angle, degrees.
+    PhaseAngle: Included(0.0), Included(180.0);
     /// An exposure, powers of two.
     Exposure: Included(-50.0), Included(50.0);
 }
