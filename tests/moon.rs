@@ -125,7 +125,8 @@ fn the_disc_of_every_phase_brings_its_irradiance_and_its_lit_side_faces_the_sun(
         match phase_deg {
             0.0 => assert!(skew.abs() < 0.01, "{skew}"),
             60.0 => assert!((0.2..0.95).contains(&skew), "{skew}"),
-            _ => assert!(skew > 0.98, "{skew} at {phase_deg}°"),
+            // The way to the sun rises towards the south, so that the terminator leans over the middle.
+            _ => assert!(skew > 0.85, "{skew} at {phase_deg}°"),
         }
     }
 }

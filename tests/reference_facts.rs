@@ -198,7 +198,7 @@ fn a_small_disc_lights_like_a_beam() {
     let toward = beam.sun().expect("a sun");
     for limb_exponent in [[0.0; 3], [0.41, 0.51, 0.64]] {
         let mut disc = even_cube([4.0; 3], 0.95, phase.clone());
-        disc.lights.push(Emitter::Disc { toward, irradiance: [1.0; 3], radius_rad: 0.01, limb_exponent });
+        disc.lights.push(Emitter::Disc { toward, irradiance: [1.0; 3], radius_rad: 0.01, limb_exponent, sphere: None });
         let (a, b) = (trace(&beam, FirstOrderBy::Walks, 65_536), trace(&disc, FirstOrderBy::Walks, 65_536));
         let error = a.total_error[0].hypot(b.total_error[0]);
         assert_equal(a.mean.total()[0], b.mean.total()[0], error, "disc");
