@@ -141,7 +141,7 @@ fn earth_under(sun: Emitter) -> World {
 }
 
 fn disc(toward: DVec3, radius_rad: f64) -> Emitter {
-    Emitter::Disc { toward, irradiance: [1.0; 3], radius_rad, limb_exponent: [0.3, 0.5, 0.7] }
+    Emitter::Disc { toward, irradiance: [1.0; 3], radius_rad, limb_exponent: [0.3, 0.5, 0.7], sphere: None }
 }
 
 #[test]

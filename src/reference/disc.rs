@@ -17,7 +17,7 @@ const RULES: [(usize, usize); 5] = [(2, 4), (3, 7), (5, 11), (8, 17), (13, 29)];
 /// in the error of the result.
 pub fn first_order_with_discs(world: &World, p: DVec3, d: DVec3, relative_error: f64) -> FirstOrder {
     let mut result = first_order(world, p, d, relative_error);
-    for light in world.lights.iter().filter(|light| matches!(light, Emitter::Disc { .. })) {
+    for light in world.lights.iter().filter(|light| matches!(light, Emitter::Disc { sphere: None, .. })) {
         let under = under_disc(world, light, p, d, relative_error);
         for j in 0..BAND_COUNT {
             result.single.value[j] += under.single.value[j];
@@ -28,9 +28,9 @@ pub fn first_order_with_discs(world: &World, p: DVec3, d: DVec3, relative_error:
     result
 }
 
-/// Whether [`first_order_with_discs`] covers a light.
+/// Whether [`first_order_with_discs`] covers a light: not a sphere lit from one side, which is sampled.
 pub fn is_integrated(light: &Emitter) -> bool {
-    is_covered(light) || matches!(light, Emitter::Disc { .. })
+    is_covered(light) || matches!(light, Emitter::Disc { sphere: None, .. })
 }
 
 /// Light of the first order under one disc alone.
@@ -71,7 +71,7 @@ fn under_beams(world: &World, beams: Vec<Emitter>, p: DVec3, d: DVec3, relative_
 /// Beams that together have the irradiance of a disc. With the sine of the angle from the centre relative to that of the
 /// limb as sin, radiance falls as cos^k towards the limb, and cos is what the rings are spaced by.
 fn beams(light: &Emitter, (rings, around_each): (usize, usize)) -> Vec<Emitter> {
-    let Emitter::Disc { toward, irradiance, radius_rad, limb_exponent } = *light else { return Vec::new() };
+    let Emitter::Disc { toward, irradiance, radius_rad, limb_exponent, .. } = *light else { return Vec::new() };
     let rule = GaussLegendre::new(rings);
     let height = 2.0 * (0.5 * radius_rad).sin().powi(2);
     let share = |cos: f64, weight: f64| -> Bands {
@@ -103,8 +103,13 @@ mod tests {
     #[test]
     fn the_beams_of_a_disc_have_its_irradiance_and_lie_on_it() {
         let toward = DVec3::new(0.3, 0.4, 0.5).normalize();
-        let disc =
-            Emitter::Disc { toward, irradiance: [1.0, 2.0, 3.0], radius_rad: 0.02, limb_exponent: [0.0, 0.5, 1.0] };
+        let disc = Emitter::Disc {
+            toward,
+            irradiance: [1.0, 2.0, 3.0],
+            radius_rad: 0.02,
+            limb_exponent: [0.0, 0.5, 1.0],
+            sphere: None,
+        };
         for rule in RULES {
             let beams = beams(&disc, rule);
             let mut sum = [0.0; BAND_COUNT];
@@ -126,8 +131,13 @@ mod tests {
     fn the_mean_square_angle_of_the_beams_is_that_of_the_discs_light() {
         // For radiance ∝ cos^k the mean of sin² is 2 / (4 + k).
         for k in [0.0, 0.5, 1.0, 2.0] {
-            let disc =
-                Emitter::Disc { toward: DVec3::Z, irradiance: [1.0; 3], radius_rad: 0.01, limb_exponent: [k; 3] };
+            let disc = Emitter::Disc {
+                toward: DVec3::Z,
+                irradiance: [1.0; 3],
+                radius_rad: 0.01,
+                limb_exponent: [k; 3],
+                sphere: None,
+            };
             let mean: f64 = beams(&disc, RULES[3])
                 .iter()
                 .map(|beam| {
