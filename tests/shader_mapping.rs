@@ -73,7 +73,9 @@ fn worst(case: &Case, texels: &[[f32; 4]]) -> (f64, f64) {
         for axis in 0..2 {
             let scale = if host[axis].abs() > 10.0 { 1e5 } else { 1.0 };
             against_host = against_host.max((f64::from(texel[axis]) - host[axis]).abs() / scale);
-            round_trip = round_trip.max((f64::from(texel[2 + axis]) - unit[axis]).abs());
+            // Rows beyond the limb of the air stand for the last view inside it.
+            let stands_for = if layer == 2 && axis == 1 { unit[1].min(case.sky_view.last_y) } else { unit[axis] };
+            round_trip = round_trip.max((f64::from(texel[2 + axis]) - stands_for).abs());
         }
     }
     (against_host, round_trip)
@@ -94,7 +96,7 @@ fn texels_come_back_to_themselves_on_the_device_as_on_the_host() {
             };
             let range = case.sky_view;
             let numbers = [planet.radius_m, planet.atmosphere_height_m, 0.0, 0.0];
-            let view = [range.horizon_rad, range.sky_end_rad, range.horizontal_y[0], range.horizontal_y[1]];
+            let view = [range.horizon_rad, range.sky_end_rad, range.sky_end_y, range.last_y];
             let block: Vec<f32> = numbers.into_iter().chain(view).map(|value| value as f32).collect();
             let shape = ImageShape::D2Array(SIZE[0], SIZE[1], 4);
             let image = gpu.image("mapped", shape, ImageFormat::Rgba32Float).unwrap();

@@ -8,7 +8,7 @@
 #ifdef SPHERE
 #import welkin::lit_sphere::{is_sphere, sphere_radiance}
 #endif
-#import welkin::observer::{light_mu_s, observer, DISC_COUNT, LIGHT_COUNT}
+#import welkin::observer::{observer, DISC_COUNT, LIGHT_COUNT}
 #import welkin::sky::{air_radiance, emission_radiance, ground_radiance, view_transmittance, SkyDirection}
 
 @group(0) @binding(8) var radiance_image: texture_storage_2d<rgba32float, write>;
@@ -43,14 +43,39 @@ fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
 #endif
 }
 
-// The direction as the tables of one light know it.
-fn relative_to_light(view: vec3<f32>, light: u32) -> SkyDirection {
+// The part of a pixel that lies on one side of the horizon.
+struct HalfPixel {
+    below_horizon: bool,
+    // Of the whole pixel: between 0 and 1 where the horizon runs through it, so that the horizon is no stair.
+    share: f32,
+    // Of the middle of the part.
+    zenith_rad: f32,
+}
+
+fn half_pixel(view: vec3<f32>, below_horizon: bool) -> HalfPixel {
+    let zenith_rad = atan2(length(view.xy), view.z);
+    let pixel_rad = pixel_angle_rad(view);
+    // From the horizon into this half.
+    let side = select(-1.0, 1.0, below_horizon);
+    let inside_rad = side * (zenith_rad - observer.view.horizon_rad);
+    var half: HalfPixel;
+    half.below_horizon = below_horizon;
+    half.share = clamp(inside_rad / pixel_rad + 0.5, 0.0, 1.0);
+    half.zenith_rad = zenith_rad;
+    if half.share < 1.0 {
+        half.zenith_rad = clamp(observer.view.horizon_rad + side * 0.5 * half.share * pixel_rad, 0.0, PI);
+    }
+    return half;
+}
+
+// The direction in one half of the view sphere as the tables of one light know it.
+fn relative_to_light(view: vec3<f32>, half: HalfPixel, light: u32) -> SkyDirection {
     var direction: SkyDirection;
-    direction.zenith_rad = atan2(length(view.xy), view.z);
+    direction.zenith_rad = half.zenith_rad;
     let turn_rad = abs(atan2(view.x, view.y) - observer.lights[light].azimuth_rad);
     direction.azimuth_rad = min(turn_rad, 2.0 * PI - turn_rad);
     direction.nu = clamp(dot(view, observer.lights[light].direction), -1.0, 1.0);
-    direction.below_horizon = direction.zenith_rad > observer.view.horizon_rad;
+    direction.below_horizon = half.below_horizon;
     return direction;
 }
 
@@ -85,41 +110,62 @@ fn disc_radiance(view: vec3<f32>, light: u32) -> vec3<f32> {
     return coverage * profile / solid_angle_sr;
 }
 
+struct Seen {
+    radiance: vec3<f32>,
+    transmittance: vec3<f32>,
+}
+
+// What a pixel sees in one half of the view sphere.
+fn seen(pixel: vec2<u32>, view: vec3<f32>, half: HalfPixel) -> Seen {
+    let air_transmittance = view_transmittance(relative_to_light(view, half, 0u));
+    let clouds = overlay(pixel, air_transmittance);
+    var seen: Seen;
+    seen.transmittance = clouds.transmittance * air_transmittance;
+    // What glows lies above all clouds.
+    seen.radiance = clouds.radiance + clouds.transmittance * emission_radiance(relative_to_light(view, half, 0u));
+    for (var light = 0u; light < LIGHT_COUNT; light++) {
+        let direction = relative_to_light(view, half, light);
+        var behind = vec3<f32>(0.0);
+        if half.below_horizon {
+            behind = ground_radiance(light, direction);
+        } else {
+            behind = disc_radiance(view, light);
+        }
+        let radiance = clouds.air * air_radiance(light, direction) + seen.transmittance * behind;
+        seen.radiance += observer.lights[light].irradiance * radiance;
+    }
+    // Lights that are only seen, and light nothing.
+    for (var light = LIGHT_COUNT; light < DISC_COUNT && !half.below_horizon; light++) {
+        seen.radiance += observer.lights[light].irradiance * seen.transmittance * disc_radiance(view, light);
+    }
+    return seen;
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
     if any(pixel.xy >= textureDimensions(radiance_image)) {
         return;
     }
     let view = view_direction(pixel.xy);
-    let air_transmittance = view_transmittance(relative_to_light(view, 0u));
-    let clouds = overlay(pixel.xy, air_transmittance);
-    let transmittance = clouds.transmittance * air_transmittance;
-    // What glows lies above all clouds.
-    var radiance = clouds.radiance + clouds.transmittance * emission_radiance(relative_to_light(view, 0u));
-    for (var light = 0u; light < LIGHT_COUNT; light++) {
-        let direction = relative_to_light(view, light);
-        var behind = vec3<f32>(0.0);
-        if direction.below_horizon {
-            behind = ground_radiance(light, direction);
-        } else {
-            behind = disc_radiance(view, light);
-        }
-        radiance += observer.lights[light].irradiance * (clouds.air * air_radiance(light, direction) + transmittance * behind);
+    let zenith_rad = atan2(length(view.xy), view.z);
+    let below_horizon = zenith_rad > observer.view.horizon_rad;
+    let half = half_pixel(view, below_horizon);
+    var pixel_sees = seen(pixel.xy, view, half);
+    // Only the pixels on the horizon look both ways. A loop and not a branch: devices that compute several pixels in
+    // lockstep leave it at once where no pixel needs it.
+    for (var i = 0u; i < 1u && half.share < 1.0; i++) {
+        let other = seen(pixel.xy, view, half_pixel(view, !below_horizon));
+        pixel_sees.radiance = mix(other.radiance, pixel_sees.radiance, half.share);
+        pixel_sees.transmittance = mix(other.transmittance, pixel_sees.transmittance, half.share);
     }
-    if !relative_to_light(view, 0u).below_horizon {
-        for (var light = LIGHT_COUNT; light < DISC_COUNT; light++) {
-            radiance += observer.lights[light].irradiance * transmittance * disc_radiance(view, light);
-        }
-    }
-    textureStore(radiance_image, pixel.xy, vec4<f32>(radiance, 1.0));
+    textureStore(radiance_image, pixel.xy, vec4<f32>(pixel_sees.radiance, 1.0));
 #ifdef CAPTURE
-    let direction = relative_to_light(view, 0u);
     var distance_m = bitcast<f32>(INFINITY_BITS);
-    if direction.below_horizon {
-        let ray = view_ray(observer.altitude_m, cos(direction.zenith_rad), light_mu_s(0u), direction.nu, true);
+    if below_horizon {
+        let ray = view_ray(observer.altitude_m, cos(zenith_rad), 0.0, 0.0, true);
         distance_m = ray.start_m + ray.length_m;
     }
-    textureStore(transmittance_image, pixel.xy, vec4<f32>(transmittance, 1.0));
+    textureStore(transmittance_image, pixel.xy, vec4<f32>(pixel_sees.transmittance, 1.0));
     textureStore(distance_image, pixel.xy, vec4<f32>(distance_m, 0.0, 0.0, 0.0));
 #endif
 }

@@ -38,7 +38,8 @@ fn distance_to_shell_from_above(radius_m: f32, altitude_m: f32, mu: f32, shell_m
     let gap = (altitude_m - shell_m) * (2.0 * radius_m + shell_m + altitude_m);
     let b = (radius_m + altitude_m) * mu;
     let discriminant = max(b * b - gap, 0.0);
-    return gap / max(sqrt(discriminant) - b, 1e-20);
+    // Grazing, the distance is √gap; no ray that meets the shell has a longer way.
+    return gap / max(sqrt(discriminant) - b, max(sqrt(gap), 1e-20));
 }
 
 // The part of a ray inside the planet's shadow, as distances (start, end) in [0, length_m]; start >= end when lit.
@@ -67,9 +68,9 @@ fn shadow_interval_m(radius_m: f32, altitude_m: f32, mu: f32, mu_s: f32, nu: f32
     let t_1 = select(c / q, t_0, q == 0.0);
     var start = min(t_0, t_1);
     var end = max(t_0, t_1);
-    // Only the side away from the light is dark: r mu_s + t nu < 0.
+    // Only the side away from the light is dark: r mu_s + t nu < 0. A ray across the light stays on its side.
     let crossing = -r * mu_s / select(nu, 1e-20, abs(nu) < 1e-20);
-    if nu > 0.0 {
+    if nu > -1e-20 {
         end = min(end, crossing);
     } else {
         start = max(start, crossing);

@@ -65,14 +65,10 @@ struct SkyViewRange {
     horizon_rad: f32,
     // Where the sky half ends: the zenith, or the limb of the air seen from outside, rad.
     sky_end_rad: f32,
-    // Where the horizontal lies in the sky half before and after y is stretched to put it on a row.
-    natural_y: f32,
-    snapped_y: f32,
-}
-
-// [0, 1] onto itself, linear on both sides of `start`, which goes to `end`.
-fn stretched(y: f32, start: f32, end: f32) -> f32 {
-    return select(1.0 - (1.0 - y) * (1.0 - end) / (1.0 - start), y * end / start, y < start);
+    // y there: less than 1 just above the top, where rows gather on the air only gradually.
+    sky_end_y: f32,
+    // Highest y at which the sky half's table is filled with a view of its own: rows beyond the limb look inside it.
+    last_y: f32,
 }
 
 struct ZenithAzimuth {
@@ -82,7 +78,7 @@ struct ZenithAzimuth {
 
 fn sky_view_from_unit(unit: vec2<f32>, below_horizon: bool, range: SkyViewRange) -> ZenithAzimuth {
     let end_rad = select(range.sky_end_rad, PI, below_horizon);
-    let y = select(stretched(unit.y, range.snapped_y, range.natural_y), unit.y, below_horizon);
+    let y = select(min(unit.y, range.last_y) / range.sky_end_y, unit.y, below_horizon);
     let zenith_rad = range.horizon_rad + (end_rad - range.horizon_rad) * y * y;
     return ZenithAzimuth(zenith_rad, PI * unit.x);
 }
@@ -90,6 +86,5 @@ fn sky_view_from_unit(unit: vec2<f32>, below_horizon: bool, range: SkyViewRange)
 fn sky_view_to_unit(zenith_rad: f32, azimuth_rad: f32, below_horizon: bool, range: SkyViewRange) -> vec2<f32> {
     let end_rad = select(range.sky_end_rad, PI, below_horizon);
     let y = sqrt(clamp((zenith_rad - range.horizon_rad) / (end_rad - range.horizon_rad), 0.0, 1.0));
-    let snapped_y = select(stretched(y, range.natural_y, range.snapped_y), y, below_horizon);
-    return vec2<f32>(clamp(azimuth_rad / PI, 0.0, 1.0), snapped_y);
+    return vec2<f32>(clamp(azimuth_rad / PI, 0.0, 1.0), y * select(range.sky_end_y, 1.0, below_horizon));
 }

@@ -2,7 +2,8 @@
 // The sky in one direction, from the sky-view table, and the ground behind it.
 //
 // The table's layers, for each light and each half of the view sphere: the logarithms of multiply scattered radiance,
-// then of each scatterer's single scattering without the phase function. All for unit irradiance of the light.
+// then of each scatterer's single scattering without the phase function. All for unit irradiance of the light, and over
+// the length of air along the ray.
 //
 // Definitions: AIR (there is any), LIT (a directional light shines on air that scatters), GROUND (light from the ground
 // belongs in the picture), MULTIPLE_SCATTERING, EMISSION (the air gives off light of its own).
@@ -10,7 +11,7 @@
 #import welkin::atmosphere::{atmosphere, phase_per_sr, PI, SCATTERER_COUNT}
 #import welkin::disc::{beam_count, beam_mu_s, beam_weight, direct_irradiance_of_disc}
 #import welkin::mapping
-#import welkin::march::{ground_mu_s, view_ray}
+#import welkin::march::{air_length_m, ground_mu_s, view_ray}
 #import welkin::observer::{light_mu_s, observer}
 #import welkin::tables::{diffuse_ground_irradiance, table_sampler}
 
@@ -46,11 +47,16 @@ fn view_row_uv(direction: SkyDirection, size: vec2<f32>) -> vec2<f32> {
     return mapping::inset(vec2<f32>(f32(direction.below_horizon), unit.y), size);
 }
 
+// Length of air along the ray, m.
+fn length_m(direction: SkyDirection) -> f32 {
+    return air_length_m(observer.altitude_m, cos(direction.zenith_rad), direction.below_horizon);
+}
+
 // Transmittance of the air to the ground or to space.
 fn view_transmittance(direction: SkyDirection) -> vec3<f32> {
 #ifdef AIR
     let uv = view_row_uv(direction, vec2<f32>(textureDimensions(view_optical_depth_table)));
-    return exp(-textureSampleLevel(view_optical_depth_table, table_sampler, uv, 0.0).rgb);
+    return exp(-length_m(direction) * textureSampleLevel(view_optical_depth_table, table_sampler, uv, 0.0).rgb);
 #else
     return vec3<f32>(1.0);
 #endif
@@ -72,6 +78,7 @@ fn air_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
         let single = textureSampleLevel(sky_view_table, table_sampler, uv, layer + SINGLE_LAYER + c, 0.0).rgb;
         radiance += phase_per_sr(c, direction.nu) * exp(single);
     }
+    radiance *= length_m(direction);
 #endif
     return radiance;
 }
@@ -98,7 +105,9 @@ fn ground_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
 fn emission_radiance(direction: SkyDirection) -> vec3<f32> {
 #ifdef EMISSION
     let uv = view_row_uv(direction, vec2<f32>(textureDimensions(view_emission_table)));
-    return textureSampleLevel(view_emission_table, table_sampler, uv, 0.0).rgb;
+    // In the ground's column, which holds light from the ground too, there is no limb to be exact at.
+    let factor = select(length_m(direction), 1.0, direction.below_horizon);
+    return factor * textureSampleLevel(view_emission_table, table_sampler, uv, 0.0).rgb;
 #else
     return vec3<f32>(0.0);
 #endif

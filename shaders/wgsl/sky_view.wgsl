@@ -1,14 +1,15 @@
 // Pass: the integrals that the sky seen from one point is made of, for every direction and light.
 //
 // Phase functions depend on a pixel's angle from the light alone, so they are left out here and applied exactly, per
-// pixel, by welkin::sky: what remains is smooth, and a small table is enough even around the sun.
+// pixel, by welkin::sky: what remains is smooth, and a small table is enough even around the sun. So is the length of
+// air that a ray passes, whose kink at the horizontal and zero at the air's limb no table could hold.
 
 #import welkin::atmosphere::{atmosphere, densities, SCATTERER_COUNT, SCATTERER_SLOTS}
 #import welkin::disc::{beam_count, beam_mu_s, beam_weight}
 #import welkin::mapping
 #import welkin::march::{
-    cut_at_shadow, leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, view_ray, AirRay, LEG_COUNT,
-    NODE_COUNT
+    air_length_m, cut_at_shadow, leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, table_altitude_m,
+    view_ray, AirRay, LEG_COUNT, NODE_COUNT
 }
 #import welkin::observer::{light_mu_s, observer}
 #import welkin::sky::{layer_of, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER}
@@ -20,7 +21,7 @@
 const DARK: f32 = 1e-30;
 
 struct Integrals {
-    // int b T T_light dt of each scatterer, sr less than radiance: its phase function is missing.
+    // int b T T_light dt of each scatterer: its phase function is missing.
     single: array<vec3<f32>, SCATTERER_SLOTS>,
     // Multiply scattered radiance.
     multiple: vec3<f32>,
@@ -75,21 +76,24 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(size));
     let view = mapping::sky_view_from_unit(unit, below_horizon, observer.view);
     let mu = cos(view.zenith_rad);
+    let altitude_m = table_altitude_m(observer.altitude_m);
     var sum: Integrals;
     for (var beam = 0u; beam < beam_count(light); beam++) {
         let mu_s = beam_mu_s(light, beam, light_mu_s(light));
         let sines = sin(view.zenith_rad) * sqrt(max(1.0 - mu_s * mu_s, 0.0));
         let nu = clamp(mu * mu_s + sines * cos(view.azimuth_rad), -1.0, 1.0);
-        var part = integrate(cut_at_shadow(view_ray(observer.altitude_m, mu, mu_s, nu, below_horizon)));
+        var part = integrate(cut_at_shadow(view_ray(altitude_m, mu, mu_s, nu, below_horizon)));
         let weight = beam_weight(light, beam);
         sum.multiple += weight * part.multiple;
         for (var c = 0u; c < SCATTERER_COUNT; c++) {
             sum.single[c] += weight * part.single[c];
         }
     }
+    let per_m = 1.0 / max(air_length_m(altitude_m, mu, below_horizon), 1e-3);
     let first = layer_of(light, below_horizon);
-    textureStore(sky_view_image, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(logarithm(sum.multiple), 0.0));
+    textureStore(sky_view_image, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(logarithm(sum.multiple * per_m), 0.0));
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
-        textureStore(sky_view_image, texel.xy, first + SINGLE_LAYER + c, vec4<f32>(logarithm(sum.single[c]), 0.0));
+        let single = logarithm(sum.single[c] * per_m);
+        textureStore(sky_view_image, texel.xy, first + SINGLE_LAYER + c, vec4<f32>(single, 0.0));
     }
 }

@@ -7,7 +7,7 @@ use crate::plan::{Declaration, Facts, Fingerprint, Need, Viewpoint};
 const NAME: &str = "view_optical_depth";
 
 /// Rows between two rows of the sky view: transmittance is what an engine multiplies everything by, and rows are cheap.
-const ROWS_PER_SKY_VIEW_ROW: u32 = 4;
+const ROWS_PER_SKY_VIEW_ROW: u32 = 16;
 
 /// The pass.
 pub const PASS: Pass = Pass {

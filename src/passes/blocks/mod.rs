@@ -72,7 +72,7 @@ mod tests {
             [direction, azimuth_rad, irradiance, angular_radius_rad, limb_exponent, averaged_radius_rad]
         );
         assert_eq!(size(&compose, "DirectionalLight"), size_of::<DirectionalLightBlock>());
-        assert_layout!(compose, "SkyViewRange", SkyViewRangeBlock, [horizon_rad, sky_end_rad, natural_y, snapped_y]);
+        assert_layout!(compose, "SkyViewRange", SkyViewRangeBlock, [horizon_rad, sky_end_rad, sky_end_y, last_y]);
         assert_layout!(compose, "PhaseLobe", PhaseLobeBlock, [scale_per_sr, quadratic, gap, slope, exponent]);
         assert_eq!(size(&compose, "PhaseLobe"), size_of::<PhaseLobeBlock>());
         assert_layout!(

@@ -25,8 +25,8 @@ pub(super) struct DirectionalLightBlock {
 pub(super) struct SkyViewRangeBlock {
     pub(super) horizon_rad: f32,
     pub(super) sky_end_rad: f32,
-    pub(super) natural_y: f32,
-    pub(super) snapped_y: f32,
+    pub(super) sky_end_y: f32,
+    pub(super) last_y: f32,
 }
 
 /// WGSL `Observer` up to its array of lights.
@@ -90,8 +90,8 @@ pub fn observer_block(facts: &Facts) -> Vec<u8> {
         view: SkyViewRangeBlock {
             horizon_rad: mapping.horizon_rad as f32,
             sky_end_rad: mapping.sky_end_rad as f32,
-            natural_y: mapping.horizontal_y[0] as f32,
-            snapped_y: mapping.horizontal_y[1] as f32,
+            sky_end_y: mapping.sky_end_y as f32,
+            last_y: mapping.last_y as f32,
         },
     };
     let dark = DirectionalLightBlock { direction: [0.0, 0.0, 1.0], ..Zeroable::zeroed() };

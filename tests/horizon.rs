@@ -1,0 +1,151 @@
+//! The horizon is a clean edge, and views into the sun, straight up and down, along the horizon and around the top of
+//! the air are what the views next to them are.
+
+mod common;
+#[path = "continuity/mod.rs"]
+mod paths;
+
+use std::f64::consts::PI;
+
+use paths::scene;
+use welkin::gpu::{DeviceRequest, Validation};
+use welkin::plan::{Outputs, Quality, Settings};
+use welkin::probe::{Orders, Ray, RayRadiance};
+use welkin::renderer::Renderer;
+use welkin_lut::mapping::SkyViewMapping;
+
+const ALTITUDES_M: [f64; 5] = [2.0, 1_000.0, 10_000.0, 100_000.0, 400_000.0];
+const SUNS_DEG: [f64; 3] = [60.0, 3.0, -4.0];
+
+fn with_renderer(test: impl FnOnce(&mut Renderer)) {
+    let _alone = common::alone();
+    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
+    let mut renderer = Renderer::new(&request).unwrap();
+    let log = renderer.gpu().validation_log();
+    test(&mut renderer);
+    drop(renderer);
+    assert!(log.messages().is_empty(), "{:?}", log.messages());
+}
+
+/// Columns of a picture half a degree high whose middle lies on the horizon: for each column and band, from above.
+fn columns_across_the_horizon(renderer: &mut Renderer, sun_deg: f64, altitude_m: f64) -> Vec<Vec<f64>> {
+    let mut scene = scene(sun_deg, altitude_m);
+    let horizon_rad = SkyViewMapping::new(&scene.planet, altitude_m, 2).horizon_rad;
+    let camera = &mut scene.camera;
+    camera.direction.elevation_rad = 0.5 * PI - horizon_rad;
+    camera.vertical_field_of_view_rad = 0.5_f64.to_radians();
+    (camera.width, camera.height) = (3, 41);
+    let frame = renderer.render(&scene, Settings::of(Quality::Medium), Outputs::default()).unwrap().frame;
+    let value = |x: usize, y: usize, band: usize| f64::from(frame.radiance[3 * y + x][band]);
+    (0..9).map(|i| (0..41).map(|y| value(i / 3, y, i % 3)).collect()).collect()
+}
+
+/// How far a pixel lies, at worst, outside what its neighbours on both sides lead to expect, relative: the straight
+/// continuations of the two above and of the two below, whose distances from it are second differences. At an edge, and
+/// where the sky brightens towards it, it lies between both; a line along the horizon does not.
+fn seam(column: &[f64]) -> f64 {
+    let excess = |five: &[f64]| {
+        let (from_above, from_below) = (2.0 * five[1] - five[0], 2.0 * five[3] - five[4]);
+        let (low, high) = (from_above.min(from_below), from_above.max(from_below));
+        (low - five[2]).max(five[2] - high) / five[2]
+    };
+    column[12..29].windows(5).map(excess).fold(0.0, f64::max)
+}
+
+#[test]
+fn no_line_runs_along_the_horizon() {
+    with_renderer(|renderer| {
+        for altitude_m in ALTITUDES_M {
+            for sun_deg in SUNS_DEG {
+                let columns = columns_across_the_horizon(renderer, sun_deg, altitude_m);
+                let worst = columns.iter().map(|column| seam(column)).fold(0.0, f64::max);
+                println!("{altitude_m} m, sun {sun_deg} deg: {worst:.5}");
+                // Half a per cent is less than a step of an 8-bit picture.
+                assert!(worst < 5e-3, "{altitude_m} m, sun {sun_deg} deg: {worst}");
+                // Negative control: a line one per cent brighter, a little above the edge.
+                let mut lined = columns[4].clone();
+                lined[16] *= 1.01;
+                assert!(seam(&lined) > 5e-3, "{altitude_m} m, sun {sun_deg} deg: the control must be noticed");
+            }
+        }
+    });
+}
+
+/// Probes a scene under a sun from an altitude in directions (zenith angle, azimuth from the sun), rad.
+fn probe(renderer: &mut Renderer, altitude_m: f64, sun_rad: f64, views: &[[f64; 2]]) -> Vec<RayRadiance> {
+    let ray = |&[view_zenith_rad, view_azimuth_rad]: &[f64; 2]| Ray {
+        altitude_m,
+        view_zenith_rad,
+        view_azimuth_rad,
+        sun_zenith_rad: sun_rad,
+        sun_azimuth_rad: 0.0,
+    };
+    let rays: Vec<Ray> = views.iter().map(ray).collect();
+    renderer.probe(&scene(0.0, 0.0), Settings::of(Quality::Low), &rays, Orders::All).unwrap()
+}
+
+/// The largest relative difference between radiances, or absolute between transmittances, which go down to 1e-9.
+fn difference(a: &RayRadiance, b: &RayRadiance) -> f64 {
+    let radiances = a.radiance.iter().zip(&b.radiance);
+    let radiance = radiances.map(|(a, b)| if a == b { 0.0 } else { (a / b - 1.0).abs() }).fold(0.0, f64::max);
+    a.transmittance.iter().zip(&b.transmittance).map(|(a, b)| (a - b).abs()).fold(radiance, f64::max)
+}
+
+fn assert_equal(a: &RayRadiance, b: &RayRadiance, bound: f64, name: &str) {
+    let all = a.radiance.iter().chain(&a.transmittance);
+    assert!(all.clone().all(|value| value.is_finite() && *value >= 0.0), "{name}: {a:?}");
+    assert!(difference(a, b) < bound, "{name}: {a:?} against {b:?}");
+}
+
+#[test]
+fn special_directions_are_what_their_neighbours_are() {
+    with_renderer(|renderer| {
+        let sun_rad = 50_f64.to_radians();
+        for altitude_m in [0.0, 2.0, 10_000.0, 99_999.0, 400_000.0] {
+            let planet = scene(0.0, 0.0).planet;
+            let horizon_rad = SkyViewMapping::new(&planet, altitude_m, 2).horizon_rad;
+            // What is looked at, how far off its neighbour lies, and how much a ten-thousandth of a radian may change:
+            // along the horizon radiance grows as the root of the angle, of which f32 leaves 3e-7 rad or 5e-4.
+            let pairs = [
+                ("into the sun", [sun_rad, 0.0], [sun_rad + 1e-4, 0.0], 2e-3),
+                ("straight up", [0.0, 1.0], [1e-4, 2.0], 1e-3),
+                ("straight down", [PI, 1.0], [PI - 1e-4, 2.0], 1e-3),
+                ("along the horizon", [horizon_rad, 1.0], [horizon_rad - 1e-6, 1.0], 5e-3),
+            ];
+            for (name, exact, beside, bound) in pairs {
+                let answers = probe(renderer, altitude_m, sun_rad, &[exact, beside]);
+                assert_equal(&answers[0], &answers[1], bound, &format!("{name} from {altitude_m} m"));
+            }
+            // Negative control: a little further from the horizon is another radiance.
+            let answers = probe(renderer, altitude_m, sun_rad, &[[horizon_rad - 1e-6, 1.0], [horizon_rad - 0.01, 1.0]]);
+            assert!(difference(&answers[0], &answers[1]) > 5e-3);
+        }
+    });
+}
+
+#[test]
+fn one_step_of_a_float_around_the_top_of_the_air_changes_nothing() {
+    with_renderer(|renderer| {
+        let top_m: f64 = 100_000.0;
+        let f32_above = f64::from((top_m as f32).next_up());
+        let altitudes_m = [top_m.next_down(), top_m, top_m.next_up(), f64::from((top_m as f32).next_down()), f32_above];
+        let views = [[0.0, 0.5], [1.0, 0.5], [1.7, 0.5], [1.75, 2.0], [2.0, 0.5], [PI, 0.0]];
+        for sun_deg in [40_f64, 92.0] {
+            let seen: Vec<_> = altitudes_m.iter().map(|&h| probe(renderer, h, sun_deg.to_radians(), &views)).collect();
+            for (altitude_m, answers) in altitudes_m.iter().zip(&seen) {
+                for ((answer, at_top), view) in answers.iter().zip(&seen[1]).zip(views) {
+                    // Upwards there are at most some millimetres of air, of 4e-6 of the density at the ground.
+                    if view[0] < 0.5 * PI {
+                        assert!(answer.radiance.iter().all(|&value| value < 1e-12), "{altitude_m}: {answer:?}");
+                    } else {
+                        assert_equal(answer, at_top, 1e-3, &format!("{view:?} from {altitude_m} m"));
+                    }
+                }
+            }
+        }
+        // Negative control: a kilometre higher is noticed.
+        let higher = probe(renderer, top_m + 1e3, 0.7, &views);
+        let at_top = probe(renderer, top_m, 0.7, &views);
+        assert!(difference(&higher[2], &at_top[2]) > 1e-3);
+    });
+}
