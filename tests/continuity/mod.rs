@@ -105,24 +105,22 @@ pub fn worst_of_each_step(pictures: &[Picture]) -> Vec<Worst> {
     let values = pictures[0].len();
     let brightest = pictures.iter().map(|picture| picture.iter().copied().fold(0.0, f64::max)).collect::<Vec<_>>();
     let steps = NEIGHBOURS..pictures.len() - 1 - NEIGHBOURS;
+    let stands_out = |step: usize, value: usize| {
+        let at = |i: usize| pictures[i][value];
+        let change = |i: usize| (at(i + 1) - at(i)).abs();
+        let usual = |start: usize| {
+            let mut around: [f64; NEIGHBOURS] = std::array::from_fn(|k| change(start + k));
+            around.sort_by(f64::total_cmp);
+            around[NEIGHBOURS / 2]
+        };
+        let size = at(step).max(at(step + 1)).max(f64::MIN_POSITIVE);
+        let noise = NOISE * size + DARKEST * brightest[step];
+        let times = (change(step) - noise).max(0.0) / usual(step - NEIGHBOURS).max(usual(step + 1)).max(noise);
+        Worst { step, value, times, change: change(step) / size }
+    };
     let worst = |step: usize| {
-        let mut worst = Worst { step, value: 0, times: 0.0, change: 0.0 };
-        for value in 0..values {
-            let at = |i: usize| pictures[i][value];
-            let change = |i: usize| (at(i + 1) - at(i)).abs();
-            let usual = |start: usize| {
-                let mut around: [f64; NEIGHBOURS] = std::array::from_fn(|k| change(start + k));
-                around.sort_by(f64::total_cmp);
-                around[NEIGHBOURS / 2]
-            };
-            let size = at(step).max(at(step + 1)).max(f64::MIN_POSITIVE);
-            let noise = NOISE * size + DARKEST * brightest[step];
-            let times = (change(step) - noise).max(0.0) / usual(step - NEIGHBOURS).max(usual(step + 1)).max(noise);
-            if times > worst.times {
-                worst = Worst { step, value, times, change: change(step) / size };
-            }
-        }
-        worst
+        let all = (0..values).map(|value| stands_out(step, value));
+        all.max_by(|a, b| a.times.total_cmp(&b.times)).expect("a picture has values")
     };
     steps.map(worst).collect()
 }
