@@ -18,6 +18,7 @@ mod emission_order;
 mod first_order;
 mod higher_order;
 mod optical_depth;
+pub mod ordinates;
 mod probe;
 mod recording;
 mod resources;

@@ -13,6 +13,7 @@ use crate::gpu::{Commands, GpuImage, Resource, Work};
 use crate::plan::Facts;
 
 /// Parameter blocks of a frame, by the names of the shaders' variables.
+#[derive(Default)]
 pub struct Parameters(BTreeMap<&'static str, Vec<u8>>);
 
 impl Parameters {
@@ -80,21 +81,34 @@ impl<'a> Recording<'a> {
     ) -> Result<(), RenderError> {
         let mut definitions = self.definitions.clone();
         definitions.extend(flags.iter().map(|flag| ((*flag).to_owned(), Definition::Bool(true))));
-        let pipeline = self.resources.pipeline(pass, definitions)?;
-        let mut bound = Vec::with_capacity(pipeline.bindings().len());
-        for binding in pipeline.bindings() {
-            let name = binding.name.as_str();
-            if let Some(resource) = find(name, images, &self.parameters, self.resources) {
-                bound.push((name, resource));
-            }
-        }
-        Ok(self.commands.dispatch(&pipeline, &bound, work)?)
+        dispatch(self.resources, &mut self.commands, pass, definitions, &self.parameters, images, work)
     }
 
     /// Runs what was recorded.
     pub fn finish(self) -> Result<crate::gpu::Completed, RenderError> {
         Ok(self.commands.submit_and_wait()?)
     }
+}
+
+/// Records a dispatch of a pass's shader; see [`Recording::dispatch`].
+pub(super) fn dispatch(
+    resources: &mut Resources,
+    commands: &mut Commands,
+    pass: &'static str,
+    definitions: Definitions,
+    parameters: &Parameters,
+    images: &[(&str, &GpuImage)],
+    work: Work,
+) -> Result<(), RenderError> {
+    let pipeline = resources.pipeline(pass, definitions)?;
+    let mut bound = Vec::with_capacity(pipeline.bindings().len());
+    for binding in pipeline.bindings() {
+        let name = binding.name.as_str();
+        if let Some(resource) = find(name, images, parameters, resources) {
+            bound.push((name, resource));
+        }
+    }
+    Ok(commands.dispatch(&pipeline, &bound, work)?)
 }
 
 /// Whatever goes by a name; what goes by none is reported by the dispatch.

@@ -66,7 +66,17 @@ impl Resources {
         }
     }
 
-    /// The buffer of a name, if it was filled.
+    /// The storage buffer of a name, made anew unless it has this size already.
+    pub fn buffer(&mut self, name: &'static str, bytes: u64) -> Result<GpuBuffer, GpuError> {
+        if let Some(buffer) = self.buffers.get(name).filter(|buffer| buffer.bytes() == bytes) {
+            return Ok(buffer.clone());
+        }
+        let buffer = self.gpu.storage_buffer(name, bytes)?;
+        self.buffers.insert(name, buffer.clone());
+        Ok(buffer)
+    }
+
+    /// The buffer of a name, if it was made.
     pub fn existing_buffer(&self, name: &str) -> Option<&GpuBuffer> {
         self.buffers.get(name)
     }

@@ -1,0 +1,157 @@
+//! The light field that the passes find in a voxel cloud.
+
+use std::error::Error;
+
+use glam::{DVec3, UVec3};
+use welkin::gpu::{DeviceRequest, Gpu};
+use welkin::passes::Resources;
+use welkin::passes::ordinates::coefficients::{forward_share, reduced_cosine};
+use welkin::passes::ordinates::{Directions, Grid, Level, Problem, Sides, Start, Volumes};
+use welkin::reference::{DensityField, GridField};
+use welkin_lut::PhaseFunction;
+
+use super::fields::extent_m;
+
+/// Iterations from darkness; twice as many change no field here by a per cent.
+const SWEEPS: u32 = 120;
+
+/// A device on which fields are solved.
+pub struct Solver(Resources);
+
+/// How a field is solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Method {
+    pub directions: Directions,
+    pub cell_m: f64,
+}
+
+/// Means and fluxes of cells, trilinear in between.
+pub struct LightField {
+    size: UVec3,
+    cell_m: DVec3,
+    /// [sun, sky] of each cell: (I1, I0).
+    moments: Vec<[[f64; 4]; 2]>,
+    /// f and g'.
+    pub forward_share: f64,
+    reduced_cosine: f64,
+}
+
+impl Solver {
+    pub fn new() -> Result<Self, Box<dyn Error>> {
+        Ok(Self(Resources::new(Gpu::new(&DeviceRequest::default())?)?))
+    }
+
+    /// Fills the grid with the cloud's extinction and solves.
+    pub fn solve(
+        &mut self,
+        cloud: &GridField,
+        method: Method,
+        phase: &PhaseFunction,
+        toward_sun: DVec3,
+    ) -> Result<LightField, Box<dyn Error>> {
+        let size = (extent_m() / method.cell_m).round().as_uvec3();
+        let cell_m = extent_m() / size.as_dvec3();
+        let levels = vec![Level { lowest_m: DVec3::ZERO, cell_m, size }];
+        let problem = Problem {
+            grid: Grid { levels, sides: Sides::Clear, refinement: 2 },
+            directions: method.directions,
+            toward_sun,
+            albedo: 1.0,
+            reduced_cosine: reduced_cosine(phase),
+            ground_albedo: 0.0,
+        };
+        let extinction = means(cloud, size * 2, cell_m / 2.0, 1.0 - forward_share(phase));
+        self.relax(&problem, &extinction, phase, SWEEPS)
+    }
+
+    /// A homogeneous slab of thickness 1 m and an optical depth, in rows of cells that nothing crosses sideways.
+    pub fn slab(
+        &mut self,
+        depth: f64,
+        toward_sun: DVec3,
+        phase: &PhaseFunction,
+        rows: u32,
+    ) -> Result<LightField, Box<dyn Error>> {
+        let (size, cell_m) = (UVec3::new(1, 1, rows), DVec3::new(1e6, 1e6, 1.0 / f64::from(rows)));
+        let levels = vec![Level { lowest_m: DVec3::ZERO, cell_m, size }];
+        let problem = Problem {
+            grid: Grid { levels, sides: Sides::Periodic, refinement: 1 },
+            directions: Directions::Sixteen,
+            toward_sun,
+            albedo: 1.0,
+            reduced_cosine: reduced_cosine(phase),
+            ground_albedo: 0.0,
+        };
+        let extinction = vec![(depth * (1.0 - forward_share(phase))) as f32; rows as usize];
+        self.relax(&problem, &extinction, phase, 40 * rows)
+    }
+
+    fn relax(
+        &mut self,
+        problem: &Problem,
+        extinction: &[f32],
+        phase: &PhaseFunction,
+        sweeps: u32,
+    ) -> Result<LightField, Box<dyn Error>> {
+        let resources = &mut self.0;
+        let volumes = Volumes::prepare(problem, resources)?;
+        let image = resources.existing_image("ordinates_extinction").ok_or("prepared")?.clone();
+        resources.gpu.write_image(&image, extinction)?;
+        let mut commands = resources.gpu.record("solve")?;
+        volumes.record_depth(resources, &mut commands)?;
+        volumes.record_source(resources, &mut commands)?;
+        volumes.record_light(Start::Cold, sweeps, resources, &mut commands)?;
+        volumes.record_moments(resources, &mut commands)?;
+        commands.submit_and_wait()?;
+        let image = |name| resources.existing_image(name).ok_or("solved");
+        let read = |name| -> Result<Vec<[u16; 4]>, Box<dyn Error>> { Ok(resources.gpu.read_image(image(name)?)?) };
+        let (sun, sky) = (read("ordinates_sunlight")?, read("ordinates_skylight")?);
+        let wide = |texel: &[u16; 4]| texel.map(|bits| f64::from(half::f16::from_bits(bits)));
+        let level = problem.grid.levels[0];
+        Ok(LightField {
+            size: level.size,
+            cell_m: level.cell_m,
+            moments: sun.iter().zip(&sky).map(|(a, b)| [wide(a), wide(b)]).collect(),
+            forward_share: forward_share(phase),
+            reduced_cosine: reduced_cosine(phase),
+        })
+    }
+}
+
+/// Mean extinction of texels times a share, from eight points in each.
+fn means(cloud: &GridField, size: UVec3, texel_m: DVec3, share: f64) -> Vec<f32> {
+    let mut texels = Vec::with_capacity(size.element_product() as usize);
+    for z in 0..size.z {
+        for y in 0..size.y {
+            for x in 0..size.x {
+                let corner = UVec3::new(x, y, z).as_dvec3();
+                let at = |i: u32| {
+                    corner + DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 0.5 + 0.25
+                };
+                texels.push(((0..8).map(|i| cloud.density(at(i) * texel_m)).sum::<f64>() / 8.0 * share) as f32);
+            }
+        }
+    }
+    texels
+}
+
+impl LightField {
+    /// Light scattered towards a view ray's observer by the similar medium, per unit of its scattering: sun and sky.
+    pub fn scattered(&self, place_m: DVec3, direction: DVec3) -> [f64; 2] {
+        let cells = (place_m / self.cell_m - 0.5).clamp(DVec3::ZERO, self.size.as_dvec3() - 1.0);
+        let low = cells.as_uvec3();
+        let share = cells - low.as_dvec3();
+        let mut sum = [[0.0; 4]; 2];
+        for i in 0..8_u32 {
+            let corner = UVec3::new(i & 1, i >> 1 & 1, i >> 2);
+            let cell = (low + corner).min(self.size - 1);
+            let side = |c: u32, s: f64| if c == 1 { s } else { 1.0 - s };
+            let weight = side(corner.x, share.x) * side(corner.y, share.y) * side(corner.z, share.z);
+            let texel = &self.moments[(cell.x + self.size.x * (cell.y + self.size.y * cell.z)) as usize];
+            for (s, t) in sum.iter_mut().flatten().zip(texel.iter().flatten()) {
+                *s += weight * t;
+            }
+        }
+        sum.map(|[x, y, z, mean]| (mean - self.reduced_cosine * direction.dot(DVec3::new(x, y, z))).max(0.0))
+    }
+}

@@ -1,0 +1,143 @@
+//! Records the passes that solve the light in clouds.
+
+use welkin_shaders::{Definition, Definitions};
+
+use super::Problem;
+use crate::gpu::{Commands, GpuImage, ImageFormat, ImageShape, Work};
+use crate::passes::recording::{Parameters, dispatch};
+use crate::passes::{RenderError, Resources};
+
+/// Bytes of the light in one direction of a cell: sun and sky.
+const RADIANCE_BYTES: u64 = 8;
+
+/// What a solution starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Start {
+    /// The next coarser level's solution, darkness on the coarsest.
+    Cold,
+    /// What the last solution has left.
+    Warm,
+}
+
+/// The passes that solve one problem, ready to be recorded.
+pub struct Volumes<'a> {
+    problem: &'a Problem,
+    definitions: Definitions,
+}
+
+impl<'a> Volumes<'a> {
+    /// Fills the parameters and makes what the passes write to. Nothing may be being recorded.
+    pub fn prepare(problem: &'a Problem, resources: &mut Resources) -> Result<Self, RenderError> {
+        let grid = &problem.grid;
+        resources.fill_buffer("ordinates", &problem.block())?;
+        let [fine, cells] = [grid.fine_texture(), grid.cell_texture()].map(|[x, y, z]| ImageShape::D3(x, y, z));
+        resources.image("ordinates_extinction", fine, ImageFormat::R32Float)?;
+        resources.image("ordinates_depth", fine, ImageFormat::R32Float)?;
+        resources.image("ordinates_source", cells, ImageFormat::Rgba32Float)?;
+        resources.image("ordinates_sunlight", cells, ImageFormat::Rgba16Float)?;
+        resources.image("ordinates_skylight", cells, ImageFormat::Rgba16Float)?;
+        resources.buffer("ordinates_radiance", radiance_bytes(problem))?;
+        Ok(Self { problem, definitions: problem.definitions() })
+    }
+
+    /// Bytes of all that the passes write to.
+    pub fn bytes(problem: &Problem) -> u64 {
+        let texels = |extent: [u32; 3]| extent.map(u64::from).iter().product::<u64>();
+        let fine = 2 * ImageFormat::R32Float.texel_bytes();
+        let cell = ImageFormat::Rgba32Float.texel_bytes() + 2 * ImageFormat::Rgba16Float.texel_bytes();
+        texels(problem.grid.fine_texture()) * fine
+            + texels(problem.grid.cell_texture()) * cell
+            + radiance_bytes(problem)
+    }
+
+    /// Optical depth towards the sun of the extinction that lies in `ordinates_extinction`.
+    pub fn record_depth(&self, resources: &mut Resources, commands: &mut Commands) -> Result<(), RenderError> {
+        self.each_level("ordinates_depth", self.problem.grid.refinement, resources, commands)
+    }
+
+    /// What cells do to light.
+    pub fn record_source(&self, resources: &mut Resources, commands: &mut Commands) -> Result<(), RenderError> {
+        self.each_level("ordinates_source", 1, resources, commands)
+    }
+
+    /// Relaxes the light in every level so many times, the coarsest level first.
+    pub fn record_light(
+        &self,
+        start: Start,
+        sweeps: u32,
+        resources: &mut Resources,
+        commands: &mut Commands,
+    ) -> Result<(), RenderError> {
+        for index in (0..self.problem.grid.levels.len()).rev() {
+            if start == Start::Cold {
+                self.relax(index, &["START"], resources, commands)?;
+            }
+            for _ in 0..sweeps {
+                self.relax(index, &[], resources, commands)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Mean and flux of the light.
+    pub fn record_moments(&self, resources: &mut Resources, commands: &mut Commands) -> Result<(), RenderError> {
+        let images = ["ordinates_sunlight", "ordinates_skylight"].map(|name| existing(resources, name));
+        let [Some(sun), Some(sky)] = &images else { return Ok(()) };
+        let images = [("ordinates_sunlight_image", sun), ("ordinates_skylight_image", sky)];
+        for (index, level) in self.problem.grid.levels.iter().enumerate() {
+            let mut parameters = Parameters::default();
+            parameters.insert("part", &[index as u32]);
+            let work = Work::Invocations(level.size.to_array());
+            dispatch(resources, commands, "ordinates_moments", self.definitions.clone(), &parameters, &images, work)?;
+        }
+        Ok(())
+    }
+
+    /// Both colours of a level.
+    fn relax(
+        &self,
+        index: usize,
+        flags: &[&str],
+        resources: &mut Resources,
+        commands: &mut Commands,
+    ) -> Result<(), RenderError> {
+        let mut definitions = self.definitions.clone();
+        definitions.extend(flags.iter().map(|flag| ((*flag).to_owned(), Definition::Bool(true))));
+        let [x, y, z] = self.problem.grid.levels[index].size.to_array();
+        for colour in 0..2_u32 {
+            let mut parameters = Parameters::default();
+            parameters.insert("sweep", &[index as u32, colour]);
+            let work = Work::Invocations([x.div_ceil(2), y, z]);
+            dispatch(resources, commands, "ordinates_sweep", definitions.clone(), &parameters, &[], work)?;
+        }
+        Ok(())
+    }
+
+    /// One dispatch a level of a pass that fills the image of its own name, of so many texels along a cell's edge.
+    fn each_level(
+        &self,
+        pass: &'static str,
+        texels: u32,
+        resources: &mut Resources,
+        commands: &mut Commands,
+    ) -> Result<(), RenderError> {
+        let Some(target) = existing(resources, pass) else { return Ok(()) };
+        let name = format!("{pass}_image");
+        for (index, level) in self.problem.grid.levels.iter().enumerate() {
+            let mut parameters = Parameters::default();
+            parameters.insert("part", &[index as u32]);
+            let work = Work::Invocations((level.size * texels).to_array());
+            let images = [(name.as_str(), &target)];
+            dispatch(resources, commands, pass, self.definitions.clone(), &parameters, &images, work)?;
+        }
+        Ok(())
+    }
+}
+
+fn radiance_bytes(problem: &Problem) -> u64 {
+    problem.grid.cell_count() * u64::from(problem.directions.count()) * RADIANCE_BYTES
+}
+
+fn existing(resources: &Resources, name: &str) -> Option<GpuImage> {
+    resources.existing_image(name).cloned()
+}
