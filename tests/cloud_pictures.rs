@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use welkin::gpu::{DeviceRequest, Validation};
-use welkin::plan::{CloudSettings, Decision, Outputs, Plan, Quality, Settings};
+use welkin::plan::{CloudScattering, CloudSettings, Decision, Outputs, Plan, Quality, Settings};
 use welkin::reference::{World, transport};
 use welkin::renderer::{Rendered, Renderer};
 use welkin::scene::Scene;
@@ -24,7 +24,8 @@ fn day(clouds: &str) -> Scene {
 
 /// Coarse, so that the tests are quick.
 fn settings() -> Settings {
-    let clouds = CloudSettings { grid_size: 32, grid_slices: 6, grid_levels: 2, ..CloudSettings::of(Quality::Low) };
+    let clouds =
+        CloudSettings { sweeps: 8, grid_size: 32, grid_slices: 6, grid_levels: 2, ..CloudSettings::of(Quality::Low) };
     Settings { clouds, ..Settings::of(Quality::Low) }
 }
 
@@ -51,7 +52,9 @@ fn a_scene_without_clouds_runs_no_pass_of_theirs_and_keeps_no_byte() {
         let passes = cloud_passes(&Renderer::plan(&scene, settings(), CAPTURE).unwrap());
         assert!(passes.len() >= 7 && passes.iter().all(|pass| *pass == (Decision::Skip, 0)), "{passes:?}");
     }
-    let cloudy = cloud_passes(&Renderer::plan(&day("[[clouds]]\nkind = \"cumulus\"\n"), settings(), CAPTURE).unwrap());
+    let ordinates = CloudSettings { scattering: CloudScattering::Ordinates8, ..settings().clouds };
+    let all = Settings { clouds: ordinates, ..settings() };
+    let cloudy = cloud_passes(&Renderer::plan(&day("[[clouds]]\nkind = \"cumulus\"\n"), all, CAPTURE).unwrap());
     assert!(cloudy.iter().all(|(decision, bytes)| *decision == Decision::Run && *bytes > 0), "{cloudy:?}");
 }
 

@@ -9,6 +9,7 @@
 //
 // Definitions: CLOUD_GRID_SIZE (columns and rows), CLOUD_GRID_SLICES, CLOUD_GRID_LEVELS, CLOUD_CELL_M (of level 0).
 
+#import welkin::atmosphere::atmosphere
 #import welkin::cloud_field::{cloud_layers, CLOUD_LAYER_COUNT}
 
 const GRID_SIZE: u32 = #{CLOUD_GRID_SIZE}u;
@@ -39,6 +40,15 @@ fn cell_of(texel: vec3<u32>) -> Cell {
     let height = (f32(texel.z % GRID_SLICES) + 0.5) / f32(GRID_SLICES);
     cell.altitude_m = cloud_layers[cell.layer].base_m + height * cloud_layers[cell.layer].thickness_m;
     return cell;
+}
+
+// A direction in the sky of a point of the map: east, north, up; the ground curves away around the origin.
+fn local_direction(map: vec2<f32>, direction: vec3<f32>) -> vec3<f32> {
+    let up = normalize(vec3<f32>(map / atmosphere.radius_m, 1.0));
+    let slope = dot(direction, up);
+    let horizontal = length(direction.xy);
+    let heading = select(vec2<f32>(0.0), direction.xy / max(horizontal, 1e-20), horizontal > 0.0);
+    return vec3<f32>(heading * sqrt(max(1.0 - slope * slope, 0.0)), slope);
 }
 
 // Where a point lies in a level: its distance from the middle, as a share of the half width.

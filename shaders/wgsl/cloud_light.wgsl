@@ -5,7 +5,7 @@
 
 #import welkin::atmosphere::atmosphere
 #import welkin::cloud_field::{cloud_layers, CLOUD_LAYER_COUNT}
-#import welkin::cloud_grid::{cell_m, cell_of, grid_sample, Cell, Part, GRID_SLICES, SLABS}
+#import welkin::cloud_grid::{cell_of, grid_sample, local_direction, Cell, Part, GRID_SLICES, SLABS}
 #import welkin::observer::observer
 
 @group(0) @binding(3) var table_sampler: sampler;
@@ -37,11 +37,8 @@ fn highest_m() -> f32 {
 }
 
 fn depth_to_light(cell: Cell, toward: vec3<f32>) -> f32 {
-    // The light's height in the cell's own sky: the ground curves away below it.
-    let up = normalize(vec3<f32>(cell.map / atmosphere.radius_m, 1.0));
-    let slope = dot(toward, up);
-    let horizontal = length(toward.xy);
-    let across = select(vec2<f32>(0.0), toward.xy / horizontal, horizontal > 0.0) * sqrt(max(1.0 - slope * slope, 0.0));
+    let local = local_direction(cell.map, toward);
+    let slope = local.z;
     let rise_m = max(highest_m() - cell.altitude_m, 0.0);
     // rise = slope t + t² / 2R
     let root = sqrt(max(slope * slope + 2.0 * rise_m / atmosphere.radius_m, 0.0));
@@ -52,7 +49,7 @@ fn depth_to_light(cell: Cell, toward: vec3<f32>) -> f32 {
         let share = (f32(i) + 0.5) / f32(STEPS);
         let t_m = length_m * share * share;
         let altitude_m = cell.altitude_m + t_m * (slope + 0.5 * t_m / atmosphere.radius_m);
-        sum += 2.0 * share * extinction(cell.map + across * t_m, altitude_m);
+        sum += 2.0 * share * extinction(cell.map + local.xy * t_m, altitude_m);
     }
     return sum * length_m / f32(STEPS);
 }

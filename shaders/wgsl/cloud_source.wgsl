@@ -6,11 +6,12 @@
 //            scattering has one with a = 1, octaves and bands several: only the numbers differ
 //   nu       cosine of the angle between view direction and light
 //
-// Definitions: CLOUD_TERM_COUNT.
+// Definitions: CLOUD_TERM_COUNT; CLOUD_ORDINATES (light scattered many times is on the grids).
 
 #import welkin::atmosphere::{atmosphere, lobe_per_sr, PhaseLobe}
 #import welkin::cloud_field::{CLOUD_LAYER_COUNT, CLOUD_LAYER_SLOTS}
 #import welkin::cloud_grid::{grid_sample, Part}
+#import welkin::cloud_matter::{cloud_matter, CloudMatter}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
 #import welkin::observer::{observer, LIGHT_COUNT}
@@ -30,18 +31,14 @@ struct CloudTerm {
     lobes: array<PhaseLobe, TERM_LOBES>,
 }
 
-struct CloudMatter {
-    // b / c.
-    albedo: vec3<f32>,
-    // 1 - mean cosine of the phase function.
-    backward: f32,
-}
-
 // Layer by layer.
 @group(1) @binding(7) var<storage, read> cloud_terms: array<CloudTerm>;
-@group(1) @binding(8) var<storage, read> cloud_matter: array<CloudMatter>;
 // Optical depths to each light, to the layer's top and to its base.
 @group(1) @binding(9) var cloud_light_image: texture_3d<f32>;
+#ifdef CLOUD_ORDINATES
+// Radiance scattered many times, per unit irradiance: its mean, and its flow.
+@group(1) @binding(12) var cloud_moments_image: texture_3d<f32>;
+#endif
 
 const PHASE_COUNT: u32 = CLOUD_LAYER_SLOTS * LIGHT_COUNT * TERM_COUNT;
 
@@ -114,8 +111,22 @@ fn surroundings(altitude_m: f32, mu_s: f32, irradiance: vec3<f32>) -> Surroundin
     return around;
 }
 
+// Radiance of light scattered many times along a step, per unit irradiance.
+fn diffuse(sample: Sample, matter: CloudMatter, part: Part, view: vec3<f32>) -> f32 {
+#ifdef CLOUD_ORDINATES
+    let moments = grid_sample(cloud_moments_image, table_sampler, part, sample.layer, sample.map, sample.height);
+    // Light that is seen along the view runs against it.
+    let toward = moments.x - matter.asymmetry * dot(vec3<f32>(view.xy, dot(view, sample.up)), moments.yzw);
+    return max(toward, 0.0) * matter.similarity * seen(sample, matter.similarity);
+#else
+    return 0.0;
+#endif
+}
+
 // Radiance that a step adds, before the air in front of it.
-fn step_radiance(sample: Sample, phase: ptr<function, array<f32, PHASE_COUNT>>) -> vec3<f32> {
+fn step_radiance(
+    sample: Sample, view: vec3<f32>, phase: ptr<function, array<f32, PHASE_COUNT>>
+) -> vec3<f32> {
     let matter = cloud_matter[sample.layer];
     var radiance = vec3<f32>(0.0);
     for (var light = 0u; light < LIGHT_COUNT; light++) {
@@ -128,6 +139,7 @@ fn step_radiance(sample: Sample, phase: ptr<function, array<f32, PHASE_COUNT>>) 
             let p = (*phase)[(sample.layer * LIGHT_COUNT + light) * TERM_COUNT + k];
             directional += p * exp(-a * depths.x) * seen(sample, a);
         }
+        directional += diffuse(sample, matter, part, view);
         radiance += directional * light_in_air(light, sample.altitude_m, mu_s);
         let around = surroundings(sample.altitude_m, mu_s, observer.lights[light].irradiance);
         // Diffuse light through a layer of conservative scatterers, by two streams: 1 / (1 + 3/4 (1 - g) tau).

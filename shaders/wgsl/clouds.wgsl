@@ -160,9 +160,9 @@ fn take_step(
             sample.height = (altitude - cloud_layers[layer].base_m) / cloud_layers[layer].thickness_m;
 #if CLOUD_LAYER_COUNT > 1
             let share = cloud_layers[layer].extinction_per_m * layer_density(layer, map, altitude) / extinction;
-            light += share * step_radiance(sample, phase);
+            light += share * step_radiance(sample, ray.direction, phase);
 #else
-            light += step_radiance(sample, phase);
+            light += step_radiance(sample, ray.direction, phase);
 #endif
         }
     }

@@ -42,6 +42,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
     let cloud_numbers = [
         ("CLOUD_LAYER_COUNT", facts.clouds.len() as u32),
         ("CLOUD_TERM_COUNT", cloud_term_count(facts)),
+        ("CLOUD_GROUPS", facts.cloud_scattering().ordinate_groups()),
         ("CLOUD_STEP_M", clouds.step_m),
         ("CLOUD_STEP_PERMILLE", clouds.step_permille),
         ("CLOUD_MAX_STEPS", clouds.max_steps),
@@ -59,6 +60,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("GROUND", facts.orders == Orders::All),
         ("MULTIPLE_SCATTERING", facts.has_multiple_scattering()),
         ("CLOUDS", !facts.clouds.is_empty()),
+        ("CLOUD_ORDINATES", facts.cloud_scattering().ordinate_groups() > 0),
         ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),
         ("CAPTURE", facts.outputs.capture),
     ];

@@ -12,6 +12,26 @@ pub enum CloudScattering {
     OctavesAsShipped,
     /// Four octaves with fitted factors, attenuated along both paths.
     OctavesFitted,
+    /// Two bands of light that is scattered little and almost straight ahead, and the rest by discrete ordinates on the
+    /// grids, eight of them.
+    Ordinates8,
+    /// The same with sixteen.
+    Ordinates16,
+}
+
+impl CloudScattering {
+    /// From the simplest to the best.
+    pub const ALL: [Self; 5] =
+        [Self::Single, Self::OctavesAsShipped, Self::OctavesFitted, Self::Ordinates8, Self::Ordinates16];
+
+    /// Groups of four ordinates of one zenith cosine; 0 where there is no grid of them.
+    pub fn ordinate_groups(self) -> u32 {
+        match self {
+            Self::Ordinates8 => 2,
+            Self::Ordinates16 => 4,
+            _ => 0,
+        }
+    }
 }
 
 /// Everything that trades accuracy for time in clouds.
@@ -19,6 +39,8 @@ pub enum CloudScattering {
 pub struct CloudSettings {
     /// Multiple scattering.
     pub scattering: CloudScattering,
+    /// Sweeps of the ordinates through the grids.
+    pub sweeps: u32,
     /// Shortest step along a ray, m.
     pub step_m: u32,
     /// Growth of steps with distance, m per km.
@@ -39,7 +61,8 @@ impl CloudSettings {
     /// The preset of a quality.
     pub fn of(quality: Quality) -> Self {
         let medium = Self {
-            scattering: CloudScattering::OctavesFitted,
+            scattering: CloudScattering::Ordinates8,
+            sweeps: 32,
             step_m: 15,
             step_permille: 5,
             max_steps: 384,
@@ -50,6 +73,7 @@ impl CloudSettings {
         };
         match quality {
             Quality::Low => Self {
+                scattering: CloudScattering::OctavesFitted,
                 step_m: 30,
                 step_permille: 10,
                 max_steps: 192,
@@ -59,8 +83,18 @@ impl CloudSettings {
                 ..medium
             },
             Quality::Medium => medium,
-            Quality::High => Self { step_m: 10, step_permille: 3, max_steps: 640, grid_slices: 16, ..medium },
+            Quality::High => Self {
+                scattering: CloudScattering::Ordinates16,
+                sweeps: 48,
+                step_m: 10,
+                step_permille: 3,
+                max_steps: 640,
+                grid_slices: 16,
+                ..medium
+            },
             Quality::Ultra => Self {
+                scattering: CloudScattering::Ordinates16,
+                sweeps: 96,
                 step_m: 5,
                 step_permille: 2,
                 max_steps: 1280,

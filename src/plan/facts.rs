@@ -6,7 +6,7 @@ use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::disc::is_wide;
 use super::faint::{Reach, reach};
-use super::{PlanError, Settings};
+use super::{CloudScattering, PlanError, Settings};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, Light, Scene};
 
@@ -111,6 +111,14 @@ impl<'a> Facts<'a> {
                 _ => Viewpoint::InSpace,
             },
         })
+    }
+
+    /// How light in clouds is found: as the settings say, but for one order alone.
+    pub fn cloud_scattering(&self) -> CloudScattering {
+        match self.orders {
+            Orders::Single => CloudScattering::Single,
+            Orders::All => self.settings.clouds.scattering,
+        }
     }
 
     /// Whether there is anything in the air.

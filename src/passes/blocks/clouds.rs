@@ -3,11 +3,11 @@
 use bytemuck::{Pod, Zeroable};
 use welkin_lut::PhaseFunction;
 use welkin_lut::cloud::{CloudLayer, CloudParameters};
+use welkin_lut::phase::DropletFit;
 
 use super::atmosphere::{PhaseLobeBlock, scaled_lobes};
 use super::vec3;
 use crate::plan::{CloudScattering, Facts};
-use crate::probe::Orders;
 
 /// Lobes that a term has room for: WGSL `TERM_LOBES`.
 const TERM_LOBES: usize = 4;
@@ -27,6 +27,10 @@ pub struct CloudTermBlock {
 pub struct CloudMatterBlock {
     pub(super) albedo: [f32; 3],
     pub(super) backward: f32,
+    pub(super) similarity: f32,
+    pub(super) asymmetry: f32,
+    pub(super) scaled_albedo: f32,
+    pub(super) padding: f32,
 }
 
 impl CloudTermBlock {
@@ -51,34 +55,66 @@ fn terms_of(phase: &PhaseFunction, scattering: CloudScattering) -> Vec<CloudTerm
         CloudScattering::Single => octaves(1, [1.0; 3]),
         CloudScattering::OctavesAsShipped => octaves(8, [0.5; 3]),
         CloudScattering::OctavesFitted => octaves(4, [0.351, 0.310, 0.377]),
+        CloudScattering::Ordinates8 | CloudScattering::Ordinates16 => bands(phase),
     }
 }
 
-/// How light in clouds is found: as the settings say, but for one order alone.
-fn scattering(facts: &Facts) -> CloudScattering {
-    match facts.orders {
-        Orders::Single => CloudScattering::Single,
-        Orders::All => facts.settings.clouds.scattering,
-    }
+/// Light that has been scattered little and almost straight ahead, as two bands of blur: what each lets through follows
+/// from how much of the forward lobes has turned by then, 1 - Σ w g^l with l fitted to path-traced clouds.
+fn bands(phase: &PhaseFunction) -> Vec<CloudTermBlock> {
+    const BLUR: f64 = 0.6;
+    let attenuation =
+        |degree: f64| 1.0 - forward_lobes(phase).into_iter().map(|(weight, g)| weight * g.powf(degree)).sum::<f64>();
+    vec![
+        CloudTermBlock::new(attenuation(9.9), phase, &[(1.0, 1.0), (-1.0, BLUR)]),
+        CloudTermBlock::new(attenuation(2.65), phase, &[(1.0, BLUR)]),
+    ]
+}
+
+/// Shares and mean cosines of a phase function's forward lobes.
+fn forward_lobes(phase: &PhaseFunction) -> Vec<(f64, f64)> {
+    let lobes = match *phase {
+        PhaseFunction::DoubleHenyeyGreenstein { weight, g1, g2 } => vec![(weight, g1), (1.0 - weight, g2)],
+        PhaseFunction::HenyeyGreensteinDraine { droplet_diameter_um } => {
+            let fit = DropletFit::new(droplet_diameter_um);
+            let narrow = 1.0 - fit.weight_draine;
+            let wide_cosine = (phase.mean_cosine() - narrow * fit.g_hg) / fit.weight_draine;
+            vec![(narrow, fit.g_hg), (fit.weight_draine, wide_cosine)]
+        }
+        _ => vec![(1.0, phase.mean_cosine())],
+    };
+    lobes.into_iter().filter(|(_, g)| *g > 0.0).collect()
 }
 
 /// Terms of each layer.
 pub fn cloud_term_count(facts: &Facts) -> u32 {
-    terms_of(&PhaseFunction::Isotropic, scattering(facts)).len() as u32
+    terms_of(&PhaseFunction::Isotropic, facts.cloud_scattering()).len() as u32
 }
 
 /// WGSL `array<CloudTerm>`: layer by layer.
 pub fn cloud_terms(facts: &Facts) -> Vec<CloudTermBlock> {
-    facts.clouds.iter().flat_map(|layer| terms_of(&layer.phase, scattering(facts))).collect()
+    facts.clouds.iter().flat_map(|layer| terms_of(&layer.phase, facts.cloud_scattering())).collect()
+}
+
+impl CloudMatterBlock {
+    /// The similarity of delta-Eddington (Joseph, Wiscombe & Weinman 1976): light in the forward peak is not scattered.
+    fn new(layer: &CloudLayer) -> Self {
+        let [g, f] = [1, 2].map(|degree| layer.phase.legendre_moment(degree));
+        let albedo = layer.albedo.iter().sum::<f64>() / layer.albedo.len() as f64;
+        Self {
+            albedo: vec3(layer.albedo),
+            backward: (1.0 - g) as f32,
+            similarity: (1.0 - f) as f32,
+            asymmetry: ((g - f) / (1.0 - f)) as f32,
+            scaled_albedo: (albedo * (1.0 - f) / (1.0 - albedo * f)) as f32,
+            padding: 0.0,
+        }
+    }
 }
 
 /// WGSL `array<CloudMatter>`.
 pub fn cloud_matter(facts: &Facts) -> Vec<CloudMatterBlock> {
-    let matter = |layer: &&CloudLayer| CloudMatterBlock {
-        albedo: vec3(layer.albedo),
-        backward: (1.0 - layer.phase.mean_cosine()) as f32,
-    };
-    facts.clouds.iter().map(matter).collect()
+    facts.clouds.iter().map(|layer| CloudMatterBlock::new(layer)).collect()
 }
 
 /// WGSL `array<CloudLayer>`.

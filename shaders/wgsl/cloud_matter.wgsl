@@ -1,0 +1,18 @@
+#define_import_path welkin::cloud_matter
+// What each layer of clouds is made of.
+
+struct CloudMatter {
+    // b / c.
+    albedo: vec3<f32>,
+    // 1 - mean cosine of the phase function.
+    backward: f32,
+    // 1 - f, f the second Legendre moment: the share of extinction that turns light away from its line.
+    similarity: f32,
+    // (g - f) / (1 - f), the mean cosine of what is left.
+    asymmetry: f32,
+    // Albedo of what is left, the bands' mean.
+    scaled_albedo: f32,
+    padding: f32,
+}
+
+@group(1) @binding(8) var<storage, read> cloud_matter: array<CloudMatter>;
