@@ -66,22 +66,23 @@ fn opacity(scene: &Scene) -> Vec<f64> {
     (0..camera.width * camera.height).map(pixel).collect()
 }
 
-/// Over the pixels of an opacity: root mean square of ln(ratio), the path tracer's own noise taken out; the ratio of
-/// the sums; and how many pixels there are.
-fn score(case: &Case, found: &Frame, opacities: std::ops::Range<f64>) -> (f64, f64, usize) {
-    let (mut squares, mut noise, mut sums, mut count) = (0.0, 0.0, [0.0; 2], 0);
+/// Over the pixels of an opacity: root mean square of ln(ratio) where noise is less than half of the light, the path
+/// tracer's own noise taken out; the ratio of the sums of all; how many pixels there are, and how many were too noisy.
+fn score(case: &Case, found: &Frame, opacities: std::ops::Range<f64>) -> (f64, f64, usize, usize) {
+    let (mut squares, mut noise, mut sums, mut count, mut noisy) = (0.0, 0.0, [0.0; 2], 0, 0);
     for i in (0..found.radiance.len()).filter(|&i| opacities.contains(&case.opacity[i])) {
         let (a, b) = (f64::from(found.radiance[i][GREEN]), f64::from(case.truth.radiance[i][GREEN]));
         let error = case.truth.standard_error.as_ref().map_or(0.0, |errors| f64::from(errors[i][GREEN]) / b);
         sums = [sums[0] + a, sums[1] + b];
-        // A pixel whose noise is half of its light says nothing of its own.
-        if b > 0.0 && error < 0.5 {
+        if b <= 0.0 || error >= 0.5 {
+            noisy += 1;
+        } else {
             squares += (a / b).ln().powi(2);
             noise += error * error;
             count += 1;
         }
     }
-    (((squares - noise) / count as f64).max(0.0).sqrt(), sums[0] / sums[1], count)
+    (((squares - noise) / count as f64).max(0.0).sqrt(), sums[0] / sums[1], count, noisy)
 }
 
 fn main() {
@@ -93,7 +94,9 @@ fn main() {
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
     let info = renderer.gpu().info();
     println!("Device: {} ({} {}).\n", info.name, info.driver, info.driver_version);
-    println!("| scene | quality | scattering | RMS ln, cloudy | energy | pixels | RMS ln, thin | FLIP | clouds ms |");
+    println!(
+        "| scene | quality | scattering | RMS ln, cloudy | energy | pixels + too noisy | RMS ln, thin | FLIP | clouds ms |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|");
     for case in &cases {
         for &quality in &qualities {
@@ -103,13 +106,13 @@ fn main() {
                 let outputs = Outputs { capture: true, picture: false };
                 let rendered =
                     renderer.render(&case.scene, settings, outputs).unwrap_or_else(|error| panic!("{error}"));
-                let (rms, energy, pixels) = score(case, &rendered.frame, 0.5..1.1);
+                let (rms, energy, pixels, noisy) = score(case, &rendered.frame, 0.5..1.1);
                 let (thin, ..) = score(case, &rendered.frame, 0.03..0.3);
                 let flip = compare(&rendered.frame, &case.truth).map_or(f64::NAN, |comparison| comparison.mean_flip);
                 let times = rendered.timings.milliseconds.iter().filter(|(name, _)| name.starts_with("cloud"));
                 let milliseconds: f64 = times.map(|(_, time)| time).sum();
                 println!(
-                    "| {} | {quality} | {scattering:?} | {rms:.2} | {energy:.2} | {pixels} | {thin:.2} | {flip:.3} | {milliseconds:.0} |",
+                    "| {} | {quality} | {scattering:?} | {rms:.2} | {energy:.2} | {pixels} + {noisy} | {thin:.2} | {flip:.3} | {milliseconds:.0} |",
                     case.name
                 );
             }

@@ -22,10 +22,17 @@ fn day(clouds: &str) -> Scene {
     scene(&format!("sun = {{ elevation_deg = 35, azimuth_deg = 200 }}\n{clouds}"))
 }
 
-/// Coarse, so that the tests are quick.
+/// Coarse, so that the tests are quick, but with everything that there is.
 fn settings() -> Settings {
-    let clouds =
-        CloudSettings { sweeps: 8, grid_size: 32, grid_slices: 6, grid_levels: 2, ..CloudSettings::of(Quality::Low) };
+    let clouds = CloudSettings {
+        scattering: CloudScattering::Ordinates16,
+        sweeps: 4,
+        near_samples: 2,
+        grid_size: 32,
+        grid_slices: 6,
+        grid_levels: 2,
+        ..CloudSettings::of(Quality::Low)
+    };
     Settings { clouds, ..Settings::of(Quality::Low) }
 }
 
@@ -52,9 +59,7 @@ fn a_scene_without_clouds_runs_no_pass_of_theirs_and_keeps_no_byte() {
         let passes = cloud_passes(&Renderer::plan(&scene, settings(), CAPTURE).unwrap());
         assert!(passes.len() >= 7 && passes.iter().all(|pass| *pass == (Decision::Skip, 0)), "{passes:?}");
     }
-    let ordinates = CloudSettings { scattering: CloudScattering::Ordinates8, ..settings().clouds };
-    let all = Settings { clouds: ordinates, ..settings() };
-    let cloudy = cloud_passes(&Renderer::plan(&day("[[clouds]]\nkind = \"cumulus\"\n"), all, CAPTURE).unwrap());
+    let cloudy = cloud_passes(&Renderer::plan(&day("[[clouds]]\nkind = \"cumulus\"\n"), settings(), CAPTURE).unwrap());
     assert!(cloudy.iter().all(|(decision, bytes)| *decision == Decision::Run && *bytes > 0), "{cloudy:?}");
 }
 
@@ -93,7 +98,8 @@ fn transmittance_error(rendered: &Rendered, scene: &Scene) -> f64 {
 #[test]
 fn what_clouds_let_through_is_what_the_references_clouds_let_through() {
     let scene = day("[[clouds]]\nkind = \"stratocumulus\"\nwater_g_per_m3 = 0.03\nseed = 4\n");
-    let settings = Settings { clouds: CloudSettings::of(Quality::High), ..settings() };
+    let settings =
+        Settings { clouds: CloudSettings { step_m: 10, step_permille: 3, ..settings().clouds }, ..settings() };
     let rendered = &render(std::slice::from_ref(&scene), settings)[0];
     let error = transmittance_error(rendered, &scene);
     // A step of 10 m with its sample anywhere in it, through edges of 5e-3 /m and a few dozen metres.

@@ -56,6 +56,15 @@ fn eccentricity(level: u32, map: vec2<f32>) -> f32 {
     return max(abs(map.x), abs(map.y)) / (0.5 * f32(GRID_SIZE) * cell_m(level));
 }
 
+// The innermost level that holds a point; beyond all, the last.
+fn level_of(map: vec2<f32>) -> u32 {
+    var level = 0u;
+    while level + 1u < GRID_LEVELS && eccentricity(level, map) >= 1.0 {
+        level += 1u;
+    }
+    return level;
+}
+
 // One of several fields that lie one after the other in a texture.
 struct Part {
     index: u32,
@@ -74,10 +83,7 @@ fn grid_uvw(part: Part, level: u32, layer: u32, map: vec2<f32>, height: f32) -> 
 fn grid_sample(
     grid: texture_3d<f32>, linear: sampler, part: Part, layer: u32, map: vec2<f32>, height: f32
 ) -> vec4<f32> {
-    var level = 0u;
-    while level + 1u < GRID_LEVELS && eccentricity(level, map) >= 1.0 {
-        level += 1u;
-    }
+    let level = level_of(map);
     let value = textureSampleLevel(grid, linear, grid_uvw(part, level, layer, map, height), 0.0);
     let outward = saturate((eccentricity(level, map) - INNER) / (1.0 - INNER));
     if level + 1u == GRID_LEVELS || outward <= 0.0 {

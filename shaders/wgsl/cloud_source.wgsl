@@ -6,11 +6,11 @@
 //            scattering has one with a = 1, octaves and bands several: only the numbers differ
 //   nu       cosine of the angle between view direction and light
 //
-// Definitions: CLOUD_TERM_COUNT; CLOUD_ORDINATES (light scattered many times is on the grids).
+// Definitions: CLOUD_NEAR_SAMPLES, looked at between a sample and where the grid of depths takes over; CLOUD_TERM_COUNT; CLOUD_ORDINATES (light scattered many times is on the grids).
 
 #import welkin::atmosphere::{atmosphere, lobe_per_sr, PhaseLobe}
-#import welkin::cloud_field::{CLOUD_LAYER_COUNT, CLOUD_LAYER_SLOTS}
-#import welkin::cloud_grid::{grid_sample, Part}
+#import welkin::cloud_field::{cloud_layers, layer_density, CLOUD_LAYER_COUNT, CLOUD_LAYER_SLOTS}
+#import welkin::cloud_grid::{cell_m, grid_sample, level_of, local_direction, Part}
 #import welkin::cloud_matter::{cloud_matter, CloudMatter}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
@@ -123,6 +123,52 @@ fn diffuse(sample: Sample, matter: CloudMatter, part: Part, view: vec3<f32>) -> 
 #endif
 }
 
+const NEAR_SAMPLES: u32 = #{CLOUD_NEAR_SAMPLES}u;
+// Where the grid takes over, in its cells: closer, it cannot tell a cloud's edge from its core.
+const NEAR_CELLS: f32 = 1.25;
+
+// Optical depth of clouds from a sample to a light.
+fn depth_to_light(sample: Sample, light: u32) -> f32 {
+    let layer = sample.layer;
+    let toward = local_direction(sample.map, observer.lights[light].direction);
+    let near_m = select(0.0, NEAR_CELLS * cell_m(level_of(sample.map)), NEAR_SAMPLES > 0u);
+    var near = 0.0;
+    for (var i = 0u; i < NEAR_SAMPLES; i++) {
+        let t_m = near_m * (f32(i) + 0.5) / f32(NEAR_SAMPLES);
+        near += layer_density(layer, sample.map + toward.xy * t_m, sample.altitude_m + toward.z * t_m);
+    }
+    near *= cloud_layers[layer].extinction_per_m * near_m / max(f32(NEAR_SAMPLES), 1.0);
+    let height = sample.height + toward.z * near_m / cloud_layers[layer].thickness_m;
+    let map = sample.map + toward.xy * near_m;
+    let far = grid_sample(cloud_light_image, table_sampler, Part(light, LIGHT_COUNT), layer, map, height).x;
+#if CLOUD_LAYER_COUNT > 1
+    return near + far;
+#else
+    return near + select(0.0, far, height <= 1.0);
+#endif
+}
+
+// What clouds leave of a light's irradiance at a point of the air or the ground: what passes them by two streams, at
+// least what passes straight or nearly so.
+fn shade(map: vec2<f32>, altitude_m: f32) -> f32 {
+    let toward = local_direction(map, observer.lights[0].direction);
+    var share = 1.0;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        let up_m = altitude_m - cloud_layers[layer].base_m;
+        if up_m > cloud_layers[layer].thickness_m {
+            continue;
+        }
+        // Below the base the light is followed up to it.
+        let along_m = max(-up_m, 0.0) / max(toward.z, 0.02);
+        let place = map + toward.xy * along_m;
+        let height = max(up_m, 0.0) / cloud_layers[layer].thickness_m;
+        let depth = grid_sample(cloud_light_image, table_sampler, Part(0u, LIGHT_COUNT), layer, place, height).x;
+        let matter = cloud_matter[layer];
+        share = min(share, max(exp(-matter.similarity * depth), 1.0 / (1.0 + 0.75 * matter.backward * depth)));
+    }
+    return share;
+}
+
 // Radiance that a step adds, before the air in front of it.
 fn step_radiance(
     sample: Sample, view: vec3<f32>, phase: ptr<function, array<f32, PHASE_COUNT>>
@@ -133,11 +179,12 @@ fn step_radiance(
         let mu_s = dot(sample.up, observer.lights[light].direction);
         let part = Part(light, LIGHT_COUNT);
         let depths = grid_sample(cloud_light_image, table_sampler, part, sample.layer, sample.map, sample.height);
+        let to_light = depth_to_light(sample, light);
         var directional = 0.0;
         for (var k = 0u; k < TERM_COUNT; k++) {
             let a = cloud_terms[sample.layer * TERM_COUNT + k].attenuation;
             let p = (*phase)[(sample.layer * LIGHT_COUNT + light) * TERM_COUNT + k];
-            directional += p * exp(-a * depths.x) * seen(sample, a);
+            directional += p * exp(-a * to_light) * seen(sample, a);
         }
         directional += diffuse(sample, matter, part, view);
         radiance += directional * light_in_air(light, sample.altitude_m, mu_s);

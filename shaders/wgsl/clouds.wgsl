@@ -5,24 +5,30 @@
 // energy. Steps start at a place of their own in each pixel, by a hash: the same picture every time.
 //
 // The air's light in front of a depth t is taken as A (1 - T(t)) / (1 - T(end)), A the whole ray's: exact where the
-// light scattered per optical depth does not change along the ray.
+// light scattered per optical depth does not change along the ray. Clouds shade it, and the ground, by the first light.
 //
-// Definitions: CLOUD_MAX_STEPS; CLOUD_STEP_M, the shortest step; CLOUD_STEP_PERMILLE, a step's share of the distance.
+// Definitions: CAPTURE (also write distances); CLOUD_MAX_STEPS; CLOUD_STEP_M, the shortest step; CLOUD_STEP_PERMILLE, a step's share of the distance.
 
 #import welkin::atmosphere::{atmosphere, extinction_at}
 #import welkin::camera::view_direction
 #import welkin::cloud_field::{cloud_layers, layer_density, to_map, CLOUD_LAYER_COUNT}
 #import welkin::cloud_noise::hash
 #import welkin::cloud_skip::empty_m
-#import welkin::cloud_source::{phases, step_radiance, Sample, PHASE_COUNT}
+#import welkin::cloud_source::{phases, shade, step_radiance, Sample, PHASE_COUNT}
 #import welkin::geometry
 #import welkin::observer::{observer, LIGHT_COUNT}
 
 // Light of the clouds at the observer, and their transmittance.
 @group(1) @binding(10) var cloud_radiance_image: texture_storage_2d<rgba32float, write>;
-// int T dT_air to the last cloud and T T_air there, from which the air's light that is left follows; and the mean
-// distance of what the clouds hide.
+// int T dT_air to the last cloud and T T_air there, from which the air's light that is left follows; and what
+// clouds leave of the light on the ground there.
 @group(1) @binding(11) var cloud_air_image: texture_storage_2d<rgba32float, write>;
+
+#ifdef CAPTURE
+// Mean distance of the clouds, weighted with what they hide.
+@group(1) @binding(13) var cloud_distance_image: texture_storage_2d<r32float, write>;
+const INFINITY_BITS: u32 = 0x7f800000u;
+#endif
 
 const MAX_STEPS: u32 = #{CLOUD_MAX_STEPS}u;
 const STEP_M: f32 = #{CLOUD_STEP_M}.0;
@@ -116,13 +122,16 @@ fn is_inside(layer: u32, altitude: f32) -> bool {
 // Moves through air alone.
 fn pass_air(sum: ptr<function, Sum>, ray: Ray, from_m: f32, to_m: f32) {
 #ifdef AIR
-    let before = exp(-(*sum).air);
     let count = u32(clamp((to_m - from_m) / 2000.0, 1.0, 16.0));
     let step_m = (to_m - from_m) / f32(count);
     for (var i = 0u; i < count; i++) {
-        (*sum).air += step_m * extinction_at(altitude_m(ray, from_m + (f32(i) + 0.5) * step_m));
+        let middle_m = from_m + (f32(i) + 0.5) * step_m;
+        let altitude = altitude_m(ray, middle_m);
+        let before = exp(-(*sum).air);
+        (*sum).air += step_m * extinction_at(altitude);
+        let map = to_map(atmosphere.radius_m, observer_position() + ray.direction * middle_m);
+        (*sum).left += exp(-(*sum).clouds) * shade(map, altitude) * (before - exp(-(*sum).air));
     }
-    (*sum).left += exp(-(*sum).clouds) * (before - exp(-(*sum).air));
 #endif
 }
 
@@ -244,8 +253,18 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
         pass_air(&sum, ray, t_m, t_m + step_m);
         t_m += step_m;
     }
+    var ground_share = 1.0;
+    if ray.end_m < NEVER_M {
+        pass_air(&sum, ray, t_m, ray.end_m);
+        ground_share = shade(to_map(atmosphere.radius_m, observer_position() + ray.direction * ray.end_m), 0.0);
+    }
     let transmittance = select(exp(-sum.clouds), 0.0, sum.clouds >= opaque);
-    let hidden = max(1.0 - transmittance, 1e-6);
+#ifdef CAPTURE
+    // Where nothing is hidden there is no such distance.
+    let hidden = 1.0 - transmittance;
+    let mean_m = select(bitcast<f32>(INFINITY_BITS), sum.weighted_m / hidden, hidden > 1e-4);
+    textureStore(cloud_distance_image, pixel.xy, vec4<f32>(mean_m, 0.0, 0.0, 0.0));
+#endif
     textureStore(cloud_radiance_image, pixel.xy, vec4<f32>(sum.radiance, transmittance));
-    textureStore(cloud_air_image, pixel.xy, vec4<f32>(sum.left + transmittance * exp(-sum.air), sum.weighted_m / hidden));
+    textureStore(cloud_air_image, pixel.xy, vec4<f32>(sum.left + transmittance * exp(-sum.air), ground_share));
 }

@@ -29,17 +29,19 @@ struct Overlay {
     radiance: vec3<f32>,
     transmittance: f32,
     air: vec3<f32>,
+    // Of the light on the ground.
+    ground: f32,
 }
 
 // `behind` is the transmittance of all of the air.
 fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
 #ifdef CLOUDS
     let clouds = textureLoad(cloud_radiance_image, pixel, 0);
-    let air = textureLoad(cloud_air_image, pixel, 0).rgb;
-    let left = (air - clouds.a * behind) / max(1.0 - behind, vec3<f32>(1e-6));
-    return Overlay(clouds.rgb, clouds.a, clamp(left, vec3<f32>(0.0), vec3<f32>(1.0)));
+    let air = textureLoad(cloud_air_image, pixel, 0);
+    let left = (air.rgb - clouds.a * behind) / max(1.0 - behind, vec3<f32>(1e-6));
+    return Overlay(clouds.rgb, clouds.a, clamp(left, vec3<f32>(0.0), vec3<f32>(1.0)), air.a);
 #else
-    return Overlay(vec3<f32>(0.0), 1.0, vec3<f32>(1.0));
+    return Overlay(vec3<f32>(0.0), 1.0, vec3<f32>(1.0), 1.0);
 #endif
 }
 
@@ -127,7 +129,7 @@ fn seen(pixel: vec2<u32>, view: vec3<f32>, half: HalfPixel) -> Seen {
         let direction = relative_to_light(view, half, light);
         var behind = vec3<f32>(0.0);
         if half.below_horizon {
-            behind = ground_radiance(light, direction);
+            behind = clouds.ground * ground_radiance(light, direction);
         } else {
             behind = disc_radiance(view, light);
         }

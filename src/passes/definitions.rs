@@ -43,6 +43,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("CLOUD_LAYER_COUNT", facts.clouds.len() as u32),
         ("CLOUD_TERM_COUNT", cloud_term_count(facts)),
         ("CLOUD_GROUPS", facts.cloud_scattering().ordinate_groups()),
+        ("CLOUD_NEAR_SAMPLES", clouds.near_samples),
         ("CLOUD_STEP_M", clouds.step_m),
         ("CLOUD_STEP_PERMILLE", clouds.step_permille),
         ("CLOUD_MAX_STEPS", clouds.max_steps),

@@ -41,6 +41,8 @@ pub struct CloudSettings {
     pub scattering: CloudScattering,
     /// Sweeps of the ordinates through the grids.
     pub sweeps: u32,
+    /// Points between a sample and where the grid of optical depths takes over.
+    pub near_samples: u32,
     /// Shortest step along a ray, m.
     pub step_m: u32,
     /// Growth of steps with distance, m per km.
@@ -63,6 +65,7 @@ impl CloudSettings {
         let medium = Self {
             scattering: CloudScattering::Ordinates8,
             sweeps: 32,
+            near_samples: 4,
             step_m: 15,
             step_permille: 5,
             max_steps: 384,
@@ -74,6 +77,7 @@ impl CloudSettings {
         match quality {
             Quality::Low => Self {
                 scattering: CloudScattering::OctavesFitted,
+                near_samples: 0,
                 step_m: 30,
                 step_permille: 10,
                 max_steps: 192,

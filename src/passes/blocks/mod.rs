@@ -24,6 +24,7 @@ fn vec3(bands: Bands) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::atmosphere::{AtmosphereHeader, ConstituentBlock, PhaseLobeBlock};
+    use super::clouds::{CloudMatterBlock, CloudTermBlock};
     use super::emission::EmitterBlock;
     use super::observer::{DirectionalLightBlock, ObserverHeader, SkyViewRangeBlock};
     use super::*;
@@ -33,6 +34,7 @@ mod tests {
     use crate::scene::Scene;
     use std::mem::offset_of;
     use std::path::Path;
+    use welkin_lut::cloud::CloudParameters;
     use welkin_shaders::{Shader, compile};
 
     fn shader(pass: &str) -> Shader {
@@ -88,6 +90,48 @@ mod tests {
         let gauss = shader("first_order");
         assert_layout!(gauss, "GaussNode", GaussNodeBlock, [abscissa, weight]);
         assert_eq!(size(&gauss, "GaussNode"), size_of::<GaussNodeBlock>());
+    }
+
+    #[test]
+    fn blocks_of_clouds_lie_in_memory_as_the_shaders_declare_them() {
+        let clouds = shader("clouds");
+        assert_layout!(clouds, "CloudTerm", CloudTermBlock, [attenuation, lobes]);
+        assert_eq!(size(&clouds, "CloudTerm"), size_of::<CloudTermBlock>());
+        assert_layout!(
+            clouds,
+            "CloudMatter",
+            CloudMatterBlock,
+            [albedo, backward, similarity, asymmetry, scaled_albedo]
+        );
+        assert_eq!(size(&clouds, "CloudMatter"), size_of::<CloudMatterBlock>());
+        assert_layout!(
+            clouds,
+            "CloudLayer",
+            CloudParameters,
+            [
+                gradient,
+                shape_per_m,
+                base_m,
+                shape_offset,
+                thickness_m,
+                erosion_offset,
+                erosion_per_m,
+                weather_offset,
+                along,
+                weather_per_m,
+                sheet,
+                coverage_from,
+                coverage_slope,
+                anvil_from,
+                reach,
+                erosion,
+                curl_m,
+                edge,
+                water_at_base,
+                extinction_per_m
+            ]
+        );
+        assert_eq!(size(&clouds, "CloudLayer"), size_of::<[f32; 32]>());
     }
 
     #[test]
