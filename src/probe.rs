@@ -15,6 +15,9 @@ pub struct Ray {
     pub sun_zenith_rad: f64,
     /// Azimuth of the direction to the light, clockwise from north, rad.
     pub sun_azimuth_rad: f64,
+    /// Where a black surface ends the ray, above 0, m; infinite where the ray runs to the ground or to space. What lies
+    /// behind is not seen, and light reaches the air before it as if the surface were not there.
+    pub distance_m: f64,
 }
 
 /// Which orders of scattering count.
@@ -32,7 +35,7 @@ pub enum Orders {
 pub struct RayRadiance {
     /// Spectral radiance arriving at the observer, W·m⁻²·sr⁻¹·nm⁻¹.
     pub radiance: Bands,
-    /// Transmittance from the observer to the ground or to space.
+    /// Transmittance from the observer to the surface, to the ground or to space.
     pub transmittance: Bands,
     /// One standard error of `radiance`; zero from backends that do not sample.
     pub standard_error: Bands,

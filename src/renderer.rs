@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::foreground::Foreground;
 use crate::frame::Frame;
 use crate::gpu::{Clock, DeviceRequest, Gpu};
 use crate::passes::{self, CLOUDS, FRAME, Pass, Recording, RenderError, Resources, TABLES, record_probe};
-use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Settings};
+use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Settings, Surface};
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Light, Scene};
 
@@ -13,6 +14,7 @@ use crate::scene::{Light, Scene};
 pub struct Renderer {
     resources: Resources,
     history: History,
+    foregrounds: u64,
 }
 
 /// A frame with what it took.
@@ -59,7 +61,7 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Gpu`] when there is none that can be used; [`RenderError::NoLinearFilter`].
     pub fn new(request: &DeviceRequest) -> Result<Self, RenderError> {
-        Ok(Self { resources: Resources::new(Gpu::new(request)?)?, history: History::default() })
+        Ok(Self { resources: Resources::new(Gpu::new(request)?)?, history: History::default(), foregrounds: 0 })
     }
 
     /// The device.
@@ -72,10 +74,31 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Plan`] when the scene asks for more than the renderer can do; device and shader errors.
     pub fn render(&mut self, scene: &Scene, settings: Settings, outputs: Outputs) -> Result<Rendered, RenderError> {
-        let facts = Facts::new(scene, settings, Orders::All, outputs)?;
+        self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?)
+    }
+
+    /// Renders the air before surfaces that the host has drawn, and sky and ground where there are none. A surface behind
+    /// the scene's ground is seen through all the air before the ground.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`]; [`RenderError::Foreground`] when the foreground is not of the camera's size.
+    pub fn render_over(
+        &mut self,
+        scene: &Scene,
+        settings: Settings,
+        outputs: Outputs,
+        foreground: &Foreground,
+    ) -> Result<Rendered, RenderError> {
+        passes::upload_foreground(&mut self.resources, &scene.camera, foreground)?;
+        self.foregrounds += 1;
+        let surface = Some(Surface::Given(self.foregrounds));
+        self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?.with_surface(surface)?)
+    }
+
+    fn render_frame(&mut self, facts: &Facts) -> Result<Rendered, RenderError> {
         let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
-        let timings = self.execute("frame", &facts, &passes, 0)?;
-        let (frame, picture) = self.read_back(&facts)?;
+        let timings = self.execute("frame", facts, &passes, 0)?;
+        let (frame, picture) = self.read_back(facts)?;
         Ok(Rendered { frame, picture, timings })
     }
 
@@ -100,7 +123,9 @@ impl Renderer {
             vec![RayRadiance { radiance: [0.0; 3], transmittance: [0.0; 3], standard_error: [0.0; 3] }; rays.len()];
         for group in groups_of_one_view(rays) {
             let seen_from = scene_for_ray(scene, &rays[group[0]]);
-            let facts = Facts::new(&seen_from, settings, orders, Outputs::default())?;
+            let ends = group.iter().any(|&index| rays[index].distance_m < f64::INFINITY);
+            let facts = Facts::new(&seen_from, settings, orders, Outputs::default())?
+                .with_surface(ends.then_some(Surface::Rays))?;
             let group_rays: Vec<_> = group.iter().map(|&index| rays[index]).collect();
             passes::upload_rays(&mut self.resources, &group_rays, &facts.sky_view_mapping())?;
             self.execute("probe", &facts, &TABLES.iter().collect::<Vec<_>>(), group.len())?;

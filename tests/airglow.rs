@@ -35,7 +35,14 @@ fn layer(bottom_m: f64, top_m: f64, absorption_per_m: f64, radiance: f64) -> Sce
 
 fn ray(altitude_m: f64, zenith_deg: f64) -> Ray {
     let view_zenith_rad = zenith_deg.to_radians();
-    Ray { altitude_m, view_zenith_rad, view_azimuth_rad: 0.0, sun_zenith_rad: 2.6, sun_azimuth_rad: 0.0 }
+    Ray {
+        altitude_m,
+        view_zenith_rad,
+        view_azimuth_rad: 0.0,
+        sun_zenith_rad: 2.6,
+        sun_azimuth_rad: 0.0,
+        distance_m: f64::INFINITY,
+    }
 }
 
 fn probe(scene: &Scene, rays: &[Ray], orders: Orders) -> Vec<RayRadiance> {

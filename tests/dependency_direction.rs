@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The modules of `src/`, lowest first, and the other modules that each may use.
-const MAY_USE: [(&str, &[&str]); 10] = [
+const MAY_USE: [(&str, &[&str]); 11] = [
     ("scene", &[]),
+    ("foreground", &["scene"]),
     ("frame", &[]),
     ("probe", &[]),
     ("gpu", &[]),
@@ -16,8 +17,8 @@ const MAY_USE: [(&str, &[&str]); 10] = [
     ("plan", &["probe", "scene"]),
     ("reference", &["frame", "output", "probe", "scene"]),
     ("report", &["frame", "output", "scene"]),
-    ("passes", &["gpu", "output", "plan", "probe", "scene"]),
-    ("renderer", &["frame", "gpu", "passes", "plan", "probe", "scene"]),
+    ("passes", &["foreground", "gpu", "output", "plan", "probe", "scene"]),
+    ("renderer", &["foreground", "frame", "gpu", "passes", "plan", "probe", "scene"]),
 ];
 
 /// Words of code that only these modules may say: crates, and what the compiler cannot check.

@@ -80,6 +80,7 @@ fn probe(renderer: &mut Renderer, altitude_m: f64, sun_rad: f64, views: &[[f64; 
         view_azimuth_rad,
         sun_zenith_rad: sun_rad,
         sun_azimuth_rad: 0.0,
+        distance_m: f64::INFINITY,
     };
     let rays: Vec<Ray> = views.iter().map(ray).collect();
     renderer.probe(&scene(0.0, 0.0), Settings::of(Quality::Low), &rays, Orders::All).unwrap()

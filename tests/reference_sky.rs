@@ -17,6 +17,7 @@ fn ray(row: &Row, altitude_m: f64) -> Ray {
         view_azimuth_rad: row.number("rel_azimuth_deg").to_radians(),
         sun_zenith_rad: row.number("sza_deg").to_radians(),
         sun_azimuth_rad: 0.0,
+        distance_m: f64::INFINITY,
     }
 }
 
@@ -103,7 +104,14 @@ fn the_ground_at_ones_feet_is_seen_in_twilight() {
     let world = tables::earth("B", 0.3);
     let down = |altitude_m| {
         let sun_zenith_rad = 95_f64.to_radians();
-        let ray = Ray { altitude_m, view_zenith_rad: 3.0, view_azimuth_rad: 0.0, sun_zenith_rad, sun_azimuth_rad: 0.0 };
+        let ray = Ray {
+            altitude_m,
+            view_zenith_rad: 3.0,
+            view_azimuth_rad: 0.0,
+            sun_zenith_rad,
+            sun_azimuth_rad: 0.0,
+            distance_m: f64::INFINITY,
+        };
         probe_world(&world, &[ray], Orders::All, Effort::RelativeError(0.02), 7)[0]
     };
     let (at_feet, above) = (down(0.0), down(0.01));

@@ -4,7 +4,9 @@ mod common;
 
 use welkin::gpu::{ImageFormat, ImageShape, Resource, Work};
 use welkin_lut::Planet;
-use welkin_lut::mapping::{MultipleScatteringMapping, OpticalDepthMapping, SkyHalf, SkyViewMapping, unit_from_texel};
+use welkin_lut::mapping::{
+    MultipleScatteringMapping, OpticalDepthMapping, SkyHalf, SkyViewMapping, SliceMapping, unit_from_texel,
+};
 use welkin_shaders::{Definitions, Shader, Sources};
 
 /// Each texel holds the parameters it stands for, and the unit coordinates that these lead back to.
@@ -40,6 +42,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let back = mapping::sky_view_to_unit(view.zenith_rad, view.azimuth_rad, half == 1u, geometry.range);
         textureStore(mapped, id.xy, 2 + half, vec4<f32>(view.zenith_rad, view.azimuth_rad, back));
     }
+    // A ray of 100 km whose lowest point lies the farther away, the lower the row.
+    let slices = mapping::slices_of(1e5, 1e5 * unit.y);
+    let distance_m = mapping::slice_distance_m(unit.x, slices);
+    textureStore(mapped, id.xy, 4, vec4<f32>(distance_m, unit.y, mapping::slice_unit(distance_m, slices), unit.y));
 }
 ";
 
@@ -57,7 +63,8 @@ impl Case {
             0 => self.optical_depth.parameters(unit),
             1 => self.multiple_scattering.parameters(unit),
             2 => self.sky_view.parameters(unit, SkyHalf::Sky),
-            _ => self.sky_view.parameters(unit, SkyHalf::Ground),
+            3 => self.sky_view.parameters(unit, SkyHalf::Ground),
+            _ => [SliceMapping { length_m: 1e5, lowest_m: 1e5 * unit[1] }.distance_m(unit[0]), unit[1]],
         }
     }
 }
@@ -98,7 +105,7 @@ fn texels_come_back_to_themselves_on_the_device_as_on_the_host() {
             let numbers = [planet.radius_m, planet.atmosphere_height_m, 0.0, 0.0];
             let view = [range.horizon_rad, range.sky_end_rad, range.sky_end_y, range.last_y];
             let block: Vec<f32> = numbers.into_iter().chain(view).map(|value| value as f32).collect();
-            let shape = ImageShape::D2Array(SIZE[0], SIZE[1], 4);
+            let shape = ImageShape::D2Array(SIZE[0], SIZE[1], 5);
             let image = gpu.image("mapped", shape, ImageFormat::Rgba32Float).unwrap();
             let mut commands = gpu.record("round trip").unwrap();
             let resources =

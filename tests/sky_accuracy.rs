@@ -124,6 +124,7 @@ fn worst_optical_depth(renderer: &mut Renderer, rows: &[Row], change: fn(&mut Sc
         view_azimuth_rad: 0.0,
         sun_zenith_rad: 0.0,
         sun_azimuth_rad: 0.0,
+        distance_m: f64::INFINITY,
     };
     let rays: Vec<Ray> = rows.iter().map(ray).collect();
     let mut worst: f64 = 0.0;

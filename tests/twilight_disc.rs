@@ -27,6 +27,7 @@ fn ray(altitude_m: f64, view_zenith_deg: f64, view_azimuth_deg: f64, sun_elevati
         view_azimuth_rad: view_azimuth_deg.to_radians(),
         sun_zenith_rad: FRAC_PI_2 - sun_elevation_deg.to_radians(),
         sun_azimuth_rad: 0.0,
+        distance_m: f64::INFINITY,
     }
 }
 

@@ -73,6 +73,7 @@ fn rays(scene: &Scene, altitudes_m: &[f64], suns_deg: &[f64]) -> Vec<Ray> {
                     view_azimuth_rad: AZIMUTHS_DEG[(v + 2 * s + 3 * o) % AZIMUTHS_DEG.len()].to_radians(),
                     sun_zenith_rad: sun_deg.to_radians(),
                     sun_azimuth_rad: 0.0,
+                    distance_m: f64::INFINITY,
                 });
             }
         }

@@ -64,6 +64,7 @@ fn questions(columns: &Columns) -> Vec<Question> {
             view_azimuth_rad: row.number("rel_azimuth_deg").to_radians(),
             sun_zenith_rad: row.number("sza_deg").to_radians(),
             sun_azimuth_rad: 0.0,
+            distance_m: f64::INFINITY,
         };
         let albedo = row.number("ground_albedo");
         let key = format!("{variant} {albedo} {ray:?}");

@@ -1,7 +1,9 @@
 // Pass: linear radiance of every pixel: the air, the ground behind it, and the discs of the lights.
 //
-// Definitions: CAPTURE (also write transmittance and distance, for files and engines), CLOUDS.
+// Definitions: CAPTURE (also write transmittance and distance, for files and engines), CLOUDS, SURFACE
+// (something stands before the camera; never with CLOUDS).
 
+#import welkin::aerial::{air_radiance_before, reach_of}
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::camera::{camera, view_direction, pixel_angle_rad}
 #import welkin::march::view_ray
@@ -17,6 +19,13 @@
 @group(0) @binding(11) var distance_image: texture_storage_2d<r32float, write>;
 // What a file means by "the ray ends in space".
 const INFINITY_BITS: u32 = 0x7f800000u;
+#endif
+
+#ifdef SURFACE
+// What stands before the camera: radiance that it sends, W/m2/sr/nm, and its distance, m.
+@group(0) @binding(19) var surface_image: texture_2d<f32>;
+// At this distance and beyond there is no surface, m.
+const NO_SURFACE_M: f32 = 1e30;
 #endif
 
 #ifdef CLOUDS
@@ -143,6 +152,19 @@ fn seen(pixel: vec2<u32>, view: vec3<f32>, half: HalfPixel) -> Seen {
     return seen;
 }
 
+#ifdef SURFACE
+// A surface through the air before it.
+fn seen_before(view: vec3<f32>, direction: HalfPixel, surface: vec4<f32>) -> Seen {
+    let reach = reach_of(relative_to_light(view, direction, 0u), surface.a);
+    var seen = Seen(reach.emission + reach.transmittance * surface.rgb, reach.transmittance);
+    for (var light = 0u; light < LIGHT_COUNT; light++) {
+        let radiance = air_radiance_before(light, relative_to_light(view, direction, light), reach);
+        seen.radiance += observer.lights[light].irradiance * radiance;
+    }
+    return seen;
+}
+#endif
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
     if any(pixel.xy >= textureDimensions(radiance_image)) {
@@ -151,8 +173,19 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
     let view = view_direction(pixel.xy);
     let zenith_rad = atan2(length(view.xy), view.z);
     let below_horizon = zenith_rad > observer.view.horizon_rad;
-    let half = half_pixel(view, below_horizon);
-    var pixel_sees = seen(pixel.xy, view, half);
+    var half = half_pixel(view, below_horizon);
+    var pixel_sees: Seen;
+#ifdef SURFACE
+    let surface = textureLoad(surface_image, pixel.xy, 0);
+    if surface.a < NO_SURFACE_M {
+        half = HalfPixel(below_horizon, 1.0, zenith_rad);
+        pixel_sees = seen_before(view, half, surface);
+    } else {
+        pixel_sees = seen(pixel.xy, view, half);
+    }
+#else
+    pixel_sees = seen(pixel.xy, view, half);
+#endif
     // Only the pixels on the horizon look both ways. A loop and not a branch: devices that compute several pixels in
     // lockstep leave it at once where no pixel needs it.
     for (var i = 0u; i < 1u && half.share < 1.0; i++) {
@@ -167,6 +200,9 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
         let ray = view_ray(observer.altitude_m, cos(zenith_rad), 0.0, 0.0, true);
         distance_m = ray.start_m + ray.length_m;
     }
+#ifdef SURFACE
+    distance_m = select(distance_m, surface.a, surface.a < NO_SURFACE_M);
+#endif
     textureStore(transmittance_image, pixel.xy, vec4<f32>(pixel_sees.transmittance, 1.0));
     textureStore(distance_image, pixel.xy, vec4<f32>(distance_m, 0.0, 0.0, 0.0));
 #endif

@@ -88,3 +88,40 @@ fn sky_view_to_unit(zenith_rad: f32, azimuth_rad: f32, below_horizon: bool, rang
     let y = sqrt(clamp((zenith_rad - range.horizon_rad) / (end_rad - range.horizon_rad), 0.0, 1.0));
     return vec2<f32>(clamp(azimuth_rad / PI, 0.0, 1.0), y * select(range.sky_end_y, 1.0, below_horizon));
 }
+
+// --- Slices of the froxels along a ray: squares of distance from its lowest point on either side.
+
+struct Slices {
+    // The ray's length inside the air, m.
+    length_m: f32,
+    // Distance of its lowest point, in [0, length_m].
+    lowest_m: f32,
+    // Where that point lies in the coordinate.
+    lowest_unit: f32,
+}
+
+fn slices_of(length_m: f32, tangent_m: f32) -> Slices {
+    let lowest_m = clamp(tangent_m, 0.0, length_m);
+    let descent = sqrt(lowest_m);
+    return Slices(length_m, lowest_m, descent / max(descent + sqrt(length_m - lowest_m), 1e-20));
+}
+
+fn slice_distance_m(unit: f32, slices: Slices) -> f32 {
+    if unit < slices.lowest_unit {
+        let v = 1.0 - unit / slices.lowest_unit;
+        return slices.lowest_m * (1.0 - v * v);
+    }
+    let v = (unit - slices.lowest_unit) / max(1.0 - slices.lowest_unit, 1e-20);
+    return slices.lowest_m + (slices.length_m - slices.lowest_m) * v * v;
+}
+
+fn slice_unit(distance_m: f32, slices: Slices) -> f32 {
+    if distance_m < slices.lowest_m {
+        // 1 - sqrt(1 - x) without cancellation near the camera.
+        let x = distance_m / slices.lowest_m;
+        return slices.lowest_unit * x / (1.0 + sqrt(1.0 - x));
+    }
+    let rest = max(slices.length_m - slices.lowest_m, 1e-20);
+    let v = sqrt(clamp((distance_m - slices.lowest_m) / rest, 0.0, 1.0));
+    return slices.lowest_unit + (1.0 - slices.lowest_unit) * v;
+}

@@ -52,31 +52,41 @@ fn length_m(direction: SkyDirection) -> f32 {
     return air_length_m(observer.altitude_m, cos(direction.zenith_rad), direction.below_horizon);
 }
 
-// Transmittance of the air to the ground or to space.
-fn view_transmittance(direction: SkyDirection) -> vec3<f32> {
+// Optical depth of the air to the ground or to space.
+fn view_optical_depth(direction: SkyDirection) -> vec3<f32> {
 #ifdef AIR
     let uv = view_row_uv(direction, vec2<f32>(textureDimensions(view_optical_depth_table)));
-    return exp(-length_m(direction) * textureSampleLevel(view_optical_depth_table, table_sampler, uv, 0.0).rgb);
+    return length_m(direction) * textureSampleLevel(view_optical_depth_table, table_sampler, uv, 0.0).rgb;
 #else
-    return vec3<f32>(1.0);
+    return vec3<f32>(0.0);
 #endif
+}
+
+// Transmittance of the air to the ground or to space.
+fn view_transmittance(direction: SkyDirection) -> vec3<f32> {
+    return exp(-view_optical_depth(direction));
+}
+
+// One layer of the sky view, over the length of air, 1/m: multiply scattered radiance, or a scatterer's light without
+// its phase function.
+fn sky_view(light: u32, layer: u32, direction: SkyDirection) -> vec3<f32> {
+    let unit = mapping::sky_view_to_unit(
+        direction.zenith_rad, direction.azimuth_rad, direction.below_horizon, observer.view
+    );
+    let uv = mapping::inset(unit, vec2<f32>(textureDimensions(sky_view_table)));
+    let first = layer_of(light, direction.below_horizon);
+    return exp(textureSampleLevel(sky_view_table, table_sampler, uv, first + layer, 0.0).rgb);
 }
 
 // Radiance of the air along the ray, 1/sr: per unit irradiance of the light.
 fn air_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
     var radiance = vec3<f32>(0.0);
 #ifdef LIT
-    let unit = mapping::sky_view_to_unit(
-        direction.zenith_rad, direction.azimuth_rad, direction.below_horizon, observer.view
-    );
-    let uv = mapping::inset(unit, vec2<f32>(textureDimensions(sky_view_table)));
-    let layer = layer_of(light, direction.below_horizon);
 #ifdef MULTIPLE_SCATTERING
-    radiance = exp(textureSampleLevel(sky_view_table, table_sampler, uv, layer + MULTIPLE_LAYER, 0.0).rgb);
+    radiance = sky_view(light, MULTIPLE_LAYER, direction);
 #endif
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
-        let single = textureSampleLevel(sky_view_table, table_sampler, uv, layer + SINGLE_LAYER + c, 0.0).rgb;
-        radiance += phase_per_sr(c, direction.nu) * exp(single);
+        radiance += phase_per_sr(c, direction.nu) * sky_view(light, SINGLE_LAYER + c, direction);
     }
     radiance *= length_m(direction);
 #endif

@@ -43,6 +43,16 @@ pub enum OutputError {
         /// What the decoder says.
         source: exr::error::Error,
     },
+    /// None of the channels that would do is there.
+    #[error("'{}' has none of the channels {names}; it has {found}", path.display())]
+    NoChannel {
+        /// The file.
+        path: PathBuf,
+        /// The channels that would do.
+        names: String,
+        /// The channels that are there.
+        found: String,
+    },
     /// A channel that every frame has is missing.
     #[error("'{}' has no channel '{channel}'; a frame needs R, G and B", path.display())]
     MissingChannel {

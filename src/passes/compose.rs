@@ -2,7 +2,7 @@
 
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need};
+use crate::plan::{Declaration, Facts, Fingerprint, Need, Surface};
 
 const NAME: &str = "compose";
 
@@ -19,11 +19,16 @@ pub const PASS: Pass = Pass {
             "view_emission_table",
             "cloud_radiance_image",
             "cloud_air_image",
+            "froxel_optical_depth",
+            "froxel_emission",
+            "froxel_light",
+            "terrain_image",
         ],
         writes: &["radiance_image", "transmittance_image", "distance_image"],
         inputs: |facts| {
             let scene = facts.scene;
-            Fingerprint::of(&(&scene.camera, &facts.lights, &facts.faint_discs, &scene.planet, facts.outputs.capture))
+            let lights = (&facts.lights, &facts.faint_discs);
+            Fingerprint::of(&(&scene.camera, lights, &scene.planet, facts.outputs.capture, facts.surface))
         },
         bytes: |facts| {
             let pixels = shape(facts).texels();
@@ -50,5 +55,11 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
         recording.resources.image("transmittance_image", shape, ImageFormat::Rgba32Float)?;
         recording.resources.image("distance_image", shape, ImageFormat::R32Float)?;
     }
-    recording.dispatch(NAME, &[], &[], Work::Invocations(shape.extent()))
+    let surface = match recording.facts.surface {
+        Some(Surface::Terrain) => recording.resources.existing_image("terrain_image").cloned(),
+        Some(Surface::Given(_)) => recording.resources.existing_image("foreground_image").cloned(),
+        Some(Surface::Rays) | None => None,
+    };
+    let images: Vec<_> = surface.iter().map(|image| ("surface_image", image)).collect();
+    recording.dispatch(NAME, &[], &images, Work::Invocations(shape.extent()))
 }

@@ -36,6 +36,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("ABOVE_COUNT", directions.above),
         ("AZIMUTH_COUNT", directions.azimuths),
         ("COSINE_COUNT", directions.below + directions.band + directions.above),
+        ("SLICE_COUNT", settings.froxel_size[2]),
         ("INVOCATION_COUNT", directions.count().min(MAX_INVOCATIONS)),
     ];
     let clouds = &settings.clouds;
@@ -64,6 +65,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("CLOUD_ORDINATES", facts.cloud_scattering().ordinate_groups() > 0),
         ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),
         ("CAPTURE", facts.outputs.capture),
+        ("SURFACE", facts.surface.is_some()),
     ];
     let numbers = numbers.into_iter().chain(cloud_numbers);
     let numbers = numbers.map(|(name, value)| (name.to_owned(), Definition::U32(value)));

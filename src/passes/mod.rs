@@ -3,6 +3,8 @@
 //! A pass's shader has the same stem. Shaders find their resources by name: what an earlier pass has left under a name
 //! is what a later one reads under it.
 
+mod aerial_optical_depth;
+mod aerial_perspective;
 pub mod blocks;
 mod cloud_bounds;
 mod cloud_density;
@@ -17,6 +19,7 @@ mod definitions;
 mod display;
 mod emission_order;
 mod first_order;
+mod foreground;
 mod higher_order;
 mod optical_depth;
 pub mod ordinates;
@@ -24,14 +27,17 @@ mod probe;
 mod recording;
 mod resources;
 mod sky_view;
+mod terrain;
 mod view_emission;
 mod view_optical_depth;
 
 pub use definitions::definitions;
+pub use foreground::upload as upload_foreground;
 pub use probe::{download as download_answers, record as record_probe, upload as upload_rays};
 pub use recording::{Parameters, Recording};
 pub use resources::Resources;
 
+use crate::foreground::ForegroundError;
 use crate::gpu::GpuError;
 use crate::plan::{Declaration, PlanError};
 use welkin_shaders::ShaderError;
@@ -45,7 +51,7 @@ pub struct Pass {
 }
 
 /// The tables that the sky is read from, in order.
-pub const TABLES: [Pass; 7] = [
+pub const TABLES: [Pass; 9] = [
     optical_depth::PASS,
     first_order::PASS,
     higher_order::PASS,
@@ -53,6 +59,8 @@ pub const TABLES: [Pass; 7] = [
     view_optical_depth::PASS,
     sky_view::PASS,
     view_emission::PASS,
+    aerial_optical_depth::PASS,
+    aerial_perspective::PASS,
 ];
 
 /// Clouds: their noise, their light, and what each pixel sees of them, in order.
@@ -68,7 +76,7 @@ pub const CLOUDS: [Pass; 8] = [
 ];
 
 /// What makes a frame of them, in order.
-pub const FRAME: [Pass; 2] = [compose::PASS, display::PASS];
+pub const FRAME: [Pass; 3] = [terrain::PASS, compose::PASS, display::PASS];
 
 /// Why a scene could not be rendered.
 #[derive(Debug, thiserror::Error)]
@@ -82,6 +90,9 @@ pub enum RenderError {
     /// The device failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// What is to stand before the camera cannot.
+    #[error(transparent)]
+    Foreground(#[from] ForegroundError),
     /// The device cannot interpolate the tables.
     #[error(
         "device '{device}' cannot interpolate textures of 32-bit floats, which welkin's tables need; choose another with --device"

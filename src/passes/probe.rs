@@ -9,6 +9,9 @@ use super::{Recording, RenderError, Resources};
 use crate::gpu::Work;
 use crate::probe::{Ray, RayRadiance};
 
+/// Beyond every ray's end, and finite in f32, m.
+const FARTHEST_M: f64 = 1e30;
+
 /// WGSL `ProbeRay`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -16,6 +19,7 @@ pub struct ProbeRayBlock {
     zenith_rad: f32,
     azimuth_rad: f32,
     below_horizon: u32,
+    distance_m: f32,
 }
 
 /// WGSL `ProbeAnswer`.
@@ -36,6 +40,7 @@ impl ProbeRayBlock {
             azimuth_rad: (PI - (turn_rad - PI).abs()) as f32,
             // Decided in f64: at the horizon f32 would take some rays for the other half.
             below_horizon: u32::from(mapping.half(ray.view_zenith_rad) == SkyHalf::Ground),
+            distance_m: ray.distance_m.min(FARTHEST_M) as f32,
         }
     }
 }

@@ -6,7 +6,7 @@ use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{
     CameraBlock, ZONAL_COUNT, atmosphere_block, cloud_layers, cloud_matter, cloud_terms, cosine_nodes, emission_block,
-    gauss_nodes, legendre_moments, observer_block,
+    gauss_nodes, height_field_block, legendre_moments, observer_block,
 };
 use super::{RenderError, Resources, definitions};
 use crate::gpu::{Commands, GpuImage, Resource, Work};
@@ -59,6 +59,9 @@ impl<'a> Recording<'a> {
             resources.fill_buffer("cloud_layers", &cloud_layers(facts))?;
             resources.fill_buffer("cloud_terms", &cloud_terms(facts))?;
             resources.fill_buffer("cloud_matter", &cloud_matter(facts))?;
+        }
+        if let Some(terrain) = facts.scene.terrain.as_ref() {
+            resources.fill_buffer("height_field", &height_field_block(terrain))?;
         }
         let commands = resources.gpu.record_timed(label)?;
         Ok(Self { facts, resources, parameters: Parameters::new(facts), definitions: definitions(facts), commands })

@@ -31,7 +31,7 @@ fn shape(facts: &Facts) -> ImageShape {
     ImageShape::D2Array(width, height, facts.sky_view_layers())
 }
 
-fn need(facts: &Facts) -> Need {
+pub(super) fn need(facts: &Facts) -> Need {
     if let Need::NotNeeded(reason) = view_optical_depth::need(facts) {
         return Need::NotNeeded(reason);
     }

@@ -35,12 +35,14 @@ fn need(facts: &Facts) -> Need {
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
     recording.resources.image("view_emission_table", shape, ImageFormat::Rgba32Float)?;
+    let flags = flags(recording);
+    recording.dispatch(NAME, &flags, &[], Work::Invocations(shape.extent()))
+}
+
+/// Which emission counts along a view ray.
+pub(super) fn flags(recording: &Recording) -> Vec<&'static str> {
     // Emission that reaches the eye unscattered has no place among light that was scattered once.
     let all = recording.facts.orders == Orders::All;
     let scattered = recording.resources.existing_image("emission_field").is_some();
-    let flags: Vec<&str> = [("EMITTED", all), ("RESCATTERED", scattered)]
-        .into_iter()
-        .filter_map(|(flag, set)| set.then_some(flag))
-        .collect();
-    recording.dispatch(NAME, &flags, &[], Work::Invocations(shape.extent()))
+    [("EMITTED", all), ("RESCATTERED", scattered)].into_iter().filter_map(|(flag, set)| set.then_some(flag)).collect()
 }

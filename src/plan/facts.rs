@@ -19,6 +19,17 @@ pub struct Outputs {
     pub picture: bool,
 }
 
+/// What stands before the camera, where the air has to be told from what is behind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Surface {
+    /// The scene's hills and mountains.
+    Terrain,
+    /// Distances and colours that the host gives, told from earlier ones by a number.
+    Given(u64),
+    /// Rays that end at a distance.
+    Rays,
+}
+
 /// Where the camera stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Viewpoint {
@@ -72,6 +83,8 @@ pub struct Facts<'a> {
     pub left_out: Vec<String>,
     /// Where the camera stands.
     pub viewpoint: Viewpoint,
+    /// What stands before it besides the ground.
+    pub surface: Option<Surface>,
 }
 
 impl<'a> Facts<'a> {
@@ -94,7 +107,7 @@ impl<'a> Facts<'a> {
         }
         let camera = &scene.camera;
         let sorted = sort_lights(&shining_lights(scene)?, scene);
-        Ok(Self {
+        let facts = Self {
             scene,
             settings,
             orders,
@@ -110,7 +123,20 @@ impl<'a> Facts<'a> {
                 h if h <= scene.planet.atmosphere_height_m => Viewpoint::InAir,
                 _ => Viewpoint::InSpace,
             },
-        })
+            surface: None,
+        };
+        facts.with_surface(scene.terrain.as_ref().map(|_| Surface::Terrain))
+    }
+
+    /// With something that stands before the camera.
+    ///
+    /// # Errors
+    /// [`PlanError::Unsupported`] among clouds.
+    pub fn with_surface(self, surface: Option<Surface>) -> Result<Self, PlanError> {
+        if surface.is_some() && !self.clouds.is_empty() {
+            return Err(PlanError::Unsupported { what: "clouds hang before and behind surfaces".to_owned() });
+        }
+        Ok(Self { surface, ..self })
     }
 
     /// How light in clouds is found: as the settings say, but for one order alone.
@@ -171,9 +197,14 @@ impl<'a> Facts<'a> {
         SkyViewMapping::new(&self.scene.planet, self.observer_altitude_m(), self.settings.sky_view_size[1])
     }
 
-    /// Where the air is seen from, m: a camera below the ground sees what one sees from the ground.
+    /// Where the air is seen from, m: a camera below the ground sees what one sees from the ground, and one inside a
+    /// mountain what one sees standing on it.
     pub fn observer_altitude_m(&self) -> f64 {
-        self.scene.camera.altitude_m.max(0.0)
+        let altitude_m = self.scene.camera.altitude_m.max(0.0);
+        match &self.scene.terrain {
+            Some(terrain) if self.surface == Some(Surface::Terrain) => terrain.eye_altitude_m(altitude_m),
+            _ => altitude_m,
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 pub use cloud_settings::{CloudScattering, CloudSettings};
 pub use declaration::{Declaration, Fingerprint, Need};
-pub use facts::{ConstituentGroups, Facts, Outputs, Viewpoint};
+pub use facts::{ConstituentGroups, Facts, Outputs, Surface, Viewpoint};
 use serde::Serialize;
 pub use settings::{Directions, Quality, Settings};
 

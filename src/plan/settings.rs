@@ -90,6 +90,8 @@ pub struct Settings {
     pub orders: u32,
     /// Sky view, each half: (azimuth, elevation).
     pub sky_view_size: [u32; 2],
+    /// Froxels, each half of the view sphere: (azimuth, elevation, distance).
+    pub froxel_size: [u32; 3],
     /// Clouds.
     pub clouds: CloudSettings,
 }
@@ -106,6 +108,7 @@ impl Settings {
                 directions: Directions { below: 3, band: 2, above: 4, azimuths: 4 },
                 orders: 3,
                 sky_view_size: [32, 48],
+                froxel_size: [8, 16, 16],
                 clouds: CloudSettings::of(quality),
             },
             Quality::Medium => Self {
@@ -116,6 +119,7 @@ impl Settings {
                 directions: Directions { below: 4, band: 3, above: 5, azimuths: 6 },
                 orders: 3,
                 sky_view_size: [48, 96],
+                froxel_size: [12, 24, 24],
                 clouds: CloudSettings::of(quality),
             },
             Quality::High => Self {
@@ -126,6 +130,7 @@ impl Settings {
                 directions: Directions { below: 4, band: 3, above: 5, azimuths: 8 },
                 orders: 3,
                 sky_view_size: [80, 144],
+                froxel_size: [16, 48, 32],
                 clouds: CloudSettings::of(quality),
             },
             Quality::Ultra => Self {
@@ -136,6 +141,7 @@ impl Settings {
                 directions: Directions { below: 5, band: 3, above: 6, azimuths: 8 },
                 orders: 4,
                 sky_view_size: [96, 192],
+                froxel_size: [24, 64, 48],
                 clouds: CloudSettings::of(quality),
             },
         }

@@ -62,6 +62,7 @@ fn irradiance(world: &World, height_m: f64, walks: u64, draw: Draw) -> Bands {
             order: 0,
             ground: false,
             pdf_per_sr: None,
+            reach_m: f64::INFINITY,
             reference: PI * BAND_COUNT as f64,
         };
         walker.follow(state, &mut tally);

@@ -41,9 +41,9 @@ pub struct Sample {
 }
 
 impl FirstEvent {
-    /// For the ray from `p` along `d`; `None` when nothing can happen to it.
-    pub fn new(world: &World, p: DVec3, d: DVec3) -> Option<Self> {
-        let span = world.shape.span(p, d)?;
+    /// For the ray from `p` along `d` up to a distance; `None` when nothing can happen to it.
+    pub fn new(world: &World, p: DVec3, d: DVec3, reach_m: f64) -> Option<Self> {
+        let span = world.shape.span(p, d)?.within(reach_m)?;
         let edges = cut(world, p, d, &breakpoints(world, p, d, &span));
         let cells = edges.len() - 1;
         let mut density = Vec::new();

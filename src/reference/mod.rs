@@ -26,6 +26,7 @@ pub mod picture;
 pub mod probe;
 mod quadrature;
 mod random;
+mod relief;
 mod segment;
 mod shape;
 pub mod single;

@@ -63,19 +63,26 @@ pub struct View<'a> {
     first: FirstOrder,
     first_by: FirstOrderBy,
     event: Option<FirstEvent>,
+    reach_m: f64,
 }
 
 impl<'a> View<'a> {
     /// The ray from `position` along the unit vector `direction`.
     pub fn new(world: &'a World, position: DVec3, direction: DVec3, first_by: FirstOrderBy) -> Self {
-        let forced = world.bodies.is_empty();
+        Self::within(world, position, direction, first_by, f64::INFINITY)
+    }
+
+    /// The same ray up to a black surface at the distance `reach_m`: the light that the matter before it sends. The
+    /// surface stands on this ray alone; all other light goes its way as if it were not there.
+    pub fn within(world: &'a World, position: DVec3, direction: DVec3, first_by: FirstOrderBy, reach_m: f64) -> Self {
+        let forced = world.bodies.is_empty() && world.relief.is_none();
         let first = match first_by {
-            FirstOrderBy::Quadrature if forced => single::first_order(world, position, direction, 1e-6),
+            FirstOrderBy::Quadrature if forced => single::first_order_within(world, position, direction, reach_m, 1e-6),
             _ => FirstOrder::default(),
         };
         let first_by = if forced { first_by } else { FirstOrderBy::Walks };
-        let event = if forced { FirstEvent::new(world, position, direction) } else { None };
-        Self { world, position, direction, first, first_by, event }
+        let event = if forced { FirstEvent::new(world, position, direction, reach_m) } else { None };
+        Self { world, position, direction, first, first_by, event, reach_m }
     }
 
     /// What quadrature found, or zeros where it was not asked.
@@ -117,6 +124,7 @@ impl<'a> View<'a> {
             order: 0,
             ground: false,
             pdf_per_sr: None,
+            reach_m: self.reach_m,
             reference: BAND_COUNT as f64,
         };
         let Some(event) = self.event.as_ref().filter(|_| by_quadrature) else {

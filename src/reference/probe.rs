@@ -7,7 +7,7 @@ use welkin_lut::{BAND_COUNT, Bands};
 use super::disc::{first_order_with_discs, is_integrated};
 use super::effort::Effort;
 use super::path::{Budget, Estimate, FirstOrderBy, View};
-use super::single::emits;
+use super::single::{emits, first_order_within, is_covered};
 use super::solver::{Solver, SolverError};
 use super::transport::transmittance;
 use super::world::World;
@@ -26,10 +26,10 @@ const MOST_WALKS: u64 = 1 << 22;
 /// Relative error of quadrature.
 const QUADRATURE_ERROR: f64 = 1e-7;
 
-/// Traces rays through a scene by the path tracer. The rays' sun angles place the first directional light; other lights
-/// stay.
+/// Traces rays through a scene, over smooth ground, by the path tracer. The rays' sun angles place the first
+/// directional light; other lights stay.
 pub fn probe(scene: &Scene, rays: &[Ray], orders: Orders, effort: Effort, seed: u64) -> Vec<RayRadiance> {
-    probe_world(&World::from_scene(scene), rays, orders, effort, seed)
+    probe_world(&World::from_scene(scene).without_relief(), rays, orders, effort, seed)
 }
 
 /// The same for a world that is not a scene's.
@@ -51,8 +51,11 @@ pub fn probe_by(
     effort: Effort,
     seed: u64,
 ) -> Result<Vec<RayRadiance>, SolverError> {
-    let world = World::from_scene(scene);
+    let world = World::from_scene(scene).without_relief();
     solver.check(&world, orders)?;
+    if solver != Solver::Path && rays.iter().any(|ray| ray.distance_m < f64::INFINITY) {
+        return Err(SolverError::Distance);
+    }
     let answer = |(i, ray): (usize, &Ray)| match solver {
         Solver::Path => trace(&world, ray, orders, effort, seed, i as u64),
         Solver::Single => {
@@ -98,10 +101,17 @@ pub fn direction(zenith_rad: f64, azimuth_rad: f64) -> DVec3 {
 fn trace(world: &World, ray: &Ray, orders: Orders, effort: Effort, seed: u64, stream: u64) -> RayRadiance {
     let (world, position, toward) = placed(world, ray);
     // Through clouds walks are quicker than quadrature under every part of a disc; emitted light is a light as well.
-    if orders == Orders::Single && world.lights.iter().all(is_integrated) && world.bodies.is_empty() && !emits(&world) {
-        return quadrature(&world, position, toward, orders);
+    if orders == Orders::Single && world.bodies.is_empty() && !emits(&world) {
+        if ray.distance_m == f64::INFINITY && world.lights.iter().all(is_integrated) {
+            return quadrature(&world, position, toward, orders);
+        }
+        if world.lights.iter().all(is_covered) {
+            let first = first_order_within(&world, position, toward, ray.distance_m, QUADRATURE_ERROR);
+            let (radiance, transmittance) = (first.single.value, first.transmittance);
+            return RayRadiance { radiance, transmittance, standard_error: [0.0; BAND_COUNT] };
+        }
     }
-    let view = View::new(&world, position, toward, FirstOrderBy::Quadrature);
+    let view = View::within(&world, position, toward, FirstOrderBy::Quadrature, ray.distance_m);
     let estimate = run(&view, effort, orders, seed, stream);
     let (radiance, standard_error) = pick(&estimate, orders);
     RayRadiance { radiance, transmittance: view.first_order().transmittance, standard_error }

@@ -48,6 +48,17 @@ pub struct Span {
     pub end: End,
 }
 
+impl Span {
+    /// The part within a distance of the ray's start, at which a black surface stands; `None` when it stands before
+    /// all matter.
+    pub fn within(self, reach_m: f64) -> Option<Self> {
+        if reach_m > self.end_m {
+            return Some(self);
+        }
+        (reach_m > self.start_m).then_some(Self { end_m: reach_m, end: End::Space, ..self })
+    }
+}
+
 impl Shape {
     /// Radius of curvature of the ground, m; infinite where there is no sphere.
     pub fn radius_m(&self) -> f64 {

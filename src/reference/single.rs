@@ -45,8 +45,13 @@ pub fn emits(world: &World) -> bool {
 
 /// Everything up to the first event for the ray from `p` along the unit vector `d`, to a relative error.
 pub fn first_order(world: &World, p: DVec3, d: DVec3, relative_error: f64) -> FirstOrder {
+    first_order_within(world, p, d, f64::INFINITY, relative_error)
+}
+
+/// The same for a ray that ends on a black surface at the distance `reach_m`, if nothing stops it before.
+pub fn first_order_within(world: &World, p: DVec3, d: DVec3, reach_m: f64, relative_error: f64) -> FirstOrder {
     let mut result = FirstOrder { transmittance: spectrum::ONE, ..FirstOrder::default() };
-    let span = world.shape.span(p, d);
+    let span = world.shape.span(p, d).and_then(|span| span.within(reach_m));
     if let Some(span) = &span {
         let cuts = lit_breakpoints(world, p, d, span);
         result.single = integrate(|t| source(world, p, d, span, t), &cuts, relative_error, 0.0);
@@ -61,6 +66,7 @@ pub fn first_order(world: &World, p: DVec3, d: DVec3, relative_error: f64) -> Fi
             let lit = ground_radiance(world, p + d * span.end_m);
             result.ground = spectrum::product(result.transmittance, lit);
         }
+        _ if reach_m < f64::INFINITY => {}
         _ => {
             for light in &world.lights {
                 if let Emitter::Environment { radiance } = light {

@@ -41,6 +41,12 @@ pub enum SolverError {
     /// Marching counts what the ground reflects with what the air scatters.
     #[error("the marching solver does not tell orders apart; the single and path solvers do")]
     Orders,
+    /// Rays that end on a black surface are the path tracer's.
+    #[error("rays end at a distance, which only the path solver knows")]
+    Distance,
+    /// Hills and mountains are the path tracer's.
+    #[error("the scene has mountains, which only the path solver knows")]
+    Relief,
 }
 
 impl Solver {
@@ -67,6 +73,9 @@ impl Solver {
     /// # Errors
     /// [`SolverError`] says what it cannot.
     pub fn check(&self, world: &World, orders: Orders) -> Result<(), SolverError> {
+        if world.relief.is_some() && *self != Self::Path {
+            return Err(SolverError::Relief);
+        }
         match self {
             Self::Single => {
                 if emits(world) {

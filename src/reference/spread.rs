@@ -43,7 +43,9 @@ impl Walker<'_> {
         let mut reservoir = Reservoir::default();
         let through = self.spread_points(state, span, sun, &mut reservoir, tally);
         if span.end == End::Space {
-            self.escape(&through, tally);
+            if state.reach_m == f64::INFINITY {
+                self.escape(&through, tally);
+            }
         } else {
             self.offer_ground(through, span, &mut reservoir, tally);
         }
@@ -58,7 +60,8 @@ impl Walker<'_> {
                 self.density = density;
             }
             None => {
-                let vertex = Vertex::Ground(self.world.ground_albedo, self.world.shape.up(event.at));
+                let (normal, albedo) = self.world.ground_at(event.at);
+                let vertex = Vertex::Ground(albedo, normal);
                 self.turn(state, event.at, &vertex);
             }
         }
@@ -111,14 +114,14 @@ impl Walker<'_> {
     }
 
     fn offer_ground(&mut self, through: State, span: &Span, reservoir: &mut Reservoir, tally: &mut Tally) {
-        let albedo = self.world.ground_albedo;
+        let at = through.position + through.direction * span.end_m;
+        let (normal, albedo) = self.world.ground_at(at);
         let share = sum(spectrum::product(through.weight, albedo));
         if share == 0.0 {
             return;
         }
         let state = State { ground: true, ..through };
-        let at = state.position + state.direction * span.end_m;
-        self.next_event(&state, at, &Vertex::Ground(albedo, self.world.shape.up(at)), |_| true, tally);
+        self.next_event(&state, at, &Vertex::Ground(albedo, normal), |_| true, tally);
         reservoir.offer(Event { state, at, rate_per_m: None, share }, self.draw.uniform());
     }
 }

@@ -48,7 +48,7 @@ pub fn extinction(world: &World, p: DVec3, d: DVec3, t_m: f64) -> Bands {
 /// τ from `p` along the unit vector `d` over `distance_m` (which may be infinite) or to the ground, by adaptive
 /// quadrature to a relative error, with the error reached (Premože 2003, eq. 13).
 pub fn optical_depth(world: &World, p: DVec3, d: DVec3, distance_m: f64, relative_error: f64) -> Integral {
-    let Some(mut span) = world.shape.span(p, d) else { return Integral::default() };
+    let Some(mut span) = world.span(p, d) else { return Integral::default() };
     span.end_m = span.end_m.min(distance_m);
     if span.end_m <= span.start_m {
         return Integral::default();
@@ -62,7 +62,7 @@ pub fn optical_depth(world: &World, p: DVec3, d: DVec3, distance_m: f64, relativ
 pub fn transmittance(world: &World, p: DVec3, d: DVec3) -> Bands {
     let stratified = World { bodies: Arc::new([]), ..world.clone() };
     let mut depth = optical_depth(&stratified, p, d, f64::INFINITY, 1e-10).value;
-    if let Some(span) = world.shape.span(p, d) {
+    if let Some(span) = world.span(p, d) {
         for body in world.bodies.iter() {
             spectrum::accumulate(&mut depth, 1.0, body.optical_depth(p, d, span.start_m, span.end_m));
         }

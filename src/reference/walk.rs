@@ -38,6 +38,8 @@ pub struct State {
     pub ground: bool,
     /// Density with which the direction was chosen, 1/sr; `None` for a camera's ray.
     pub pdf_per_sr: Option<f64>,
+    /// Distance at which a black surface stands on the ray, m; infinite after the first event.
+    pub reach_m: f64,
     /// Sum of the weights at which roulette measures.
     pub reference: f64,
 }
@@ -85,8 +87,11 @@ impl<'a> Walker<'a> {
     /// Follows the ray to the next real event; false when the walk has ended.
     fn advance(&mut self, state: &mut State, tally: &mut Tally) -> bool {
         let (p, d) = (state.position, state.direction);
-        let Some(span) = self.world.shape.span(p, d) else {
-            self.escape(state, tally);
+        let blocked = |state: &State| state.reach_m < f64::INFINITY;
+        let Some(span) = self.world.span(p, d).and_then(|span| span.within(state.reach_m)) else {
+            if !blocked(state) {
+                self.escape(state, tally);
+            }
             return false;
         };
         if let Some(guide) = self.guide.filter(|guide| guide.spreads(self.world, p)) {
@@ -107,7 +112,9 @@ impl<'a> Walker<'a> {
             }
         }
         if span.end == End::Space {
-            self.escape(state, tally);
+            if !blocked(state) {
+                self.escape(state, tally);
+            }
             return false;
         }
         self.reflect(state, p + d * span.end_m, |_| true, tally)
@@ -198,12 +205,12 @@ impl<'a> Walker<'a> {
 
     /// Reflection by the ground; false when the walk has ended.
     fn reflect(&mut self, state: &mut State, at: DVec3, lights: impl Fn(&Emitter) -> bool, tally: &mut Tally) -> bool {
-        let albedo = self.world.ground_albedo;
+        let (normal, albedo) = self.world.ground_at(at);
         if sum(albedo) == 0.0 {
             return false;
         }
         state.ground = true;
-        let vertex = Vertex::Ground(albedo, self.world.shape.up(at));
+        let vertex = Vertex::Ground(albedo, normal);
         self.next_event(state, at, &vertex, lights, tally);
         self.turn(state, at, &vertex);
         self.survives(state)
@@ -266,6 +273,7 @@ impl<'a> Walker<'a> {
         state.direction = direction;
         state.order += 1;
         state.pdf_per_sr = Some(pdf);
+        state.reach_m = f64::INFINITY;
     }
 
     fn sample(&mut self, state: &State, at: DVec3, vertex: &Vertex) -> DVec3 {

@@ -10,9 +10,9 @@ use super::clouds::CloudShell;
 use super::field::Body;
 use super::light::Emitter;
 use super::random::Draw;
-use super::shape::{End, Shape};
+use super::shape::{End, Shape, Span};
 use super::spectrum;
-use crate::scene::Scene;
+use crate::scene::{Scene, Terrain};
 
 /// The problem that every solver is given. Cheap to clone: matter is shared.
 #[derive(Debug, Clone)]
@@ -25,6 +25,8 @@ pub struct World {
     pub air: Arc<Air>,
     /// Matter that varies in three dimensions; it has to lie inside the shape.
     pub bodies: Arc<[Body]>,
+    /// Hills and mountains on the ground.
+    pub relief: Option<Arc<Terrain>>,
     /// What shines.
     pub lights: Vec<Emitter>,
 }
@@ -42,7 +44,7 @@ impl World {
     /// Stratified constituents inside a shape, without lights.
     pub fn stratified(shape: Shape, ground_albedo: Bands, constituents: &[Constituent]) -> Self {
         let air = Arc::new(Air::new(&shape, constituents));
-        Self { shape, ground_albedo, air, bodies: Arc::new([]), lights: Vec::new() }
+        Self { shape, ground_albedo, air, bodies: Arc::new([]), relief: None, lights: Vec::new() }
     }
 
     /// The scene's planet, medium, clouds and lights; the origin is the ground point below the camera.
@@ -53,7 +55,28 @@ impl World {
         let body = |layer| CloudShell::body(layer, planet.radius_m, scene.time_s);
         world.bodies = scene.clouds.iter().filter_map(body).collect();
         world.lights = scene.lights.iter().map(Emitter::new).collect();
+        world.relief = scene.terrain.clone().map(Arc::new);
         world
+    }
+
+    /// The same world with a smooth ground.
+    pub fn without_relief(self) -> Self {
+        Self { relief: None, ..self }
+    }
+
+    /// The part of a ray inside the shape and above the ground.
+    pub fn span(&self, p: DVec3, d: DVec3) -> Option<Span> {
+        let span = self.shape.span(p, d)?;
+        let meets = self.relief.as_ref().and_then(|relief| relief.meets(&self.shape, p, d, &span));
+        Some(meets.map_or(span, |end_m| Span { end_m, end: End::Ground, ..span }))
+    }
+
+    /// Normal and Lambertian reflectance of the ground at a point on it.
+    pub fn ground_at(&self, at: DVec3) -> (DVec3, Bands) {
+        match &self.relief {
+            Some(relief) => (relief.normal(&self.shape, at), relief.albedo(&self.shape, at)),
+            None => (self.shape.up(at), self.ground_albedo),
+        }
     }
 
     /// The same world with its first directional light moved.
@@ -101,7 +124,7 @@ impl World {
     /// An unbiased estimate of the transmittance between `p` and a point `distance_m` (which may be infinite) away:
     /// quadrature through the air, ratio tracking through bodies. `None` when the ground is in between.
     pub fn transmittance(&self, p: DVec3, d: DVec3, distance_m: f64, draw: &mut Draw) -> Option<Bands> {
-        let Some(span) = self.shape.span(p, d) else { return Some(spectrum::ONE) };
+        let Some(span) = self.span(p, d) else { return Some(spectrum::ONE) };
         if span.end == End::Ground && span.end_m < distance_m {
             return None;
         }

@@ -4,14 +4,18 @@ use std::path::Path;
 
 use glam::DVec3;
 use welkin_lut::Planet;
+use welkin_lut::height_field::HeightField;
 
 use super::clouds::assemble_clouds;
-use super::file::{CameraFile, DisplayFile, LightsFile, PlanetFile, SceneFile, SunFile, ToneMapFile, WhenFile};
+use super::file::{
+    CameraFile, DisplayFile, LightsFile, PlanetFile, SceneFile, SunFile, TerrainFile, ToneMapFile, WhenFile,
+};
 use super::medium::assemble_medium;
 use super::moon::assemble_moon;
 use super::sun_position::sun_direction;
 use super::{
-    Camera, Direction, DirectionalLight, Display, EnvironmentLight, Light, PointLight, Preset, Problem, Scene, ToneMap,
+    Camera, Direction, DirectionalLight, Display, EnvironmentLight, Light, PointLight, Preset, Problem, Scene, Terrain,
+    ToneMap,
 };
 
 const DEFAULT_FIELD_OF_VIEW_DEG: f64 = 60.0;
@@ -38,7 +42,9 @@ pub fn assemble(file: &SceneFile, path: &Path) -> Result<Scene, Problem> {
     }
     let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let name = file.name.clone().unwrap_or_else(stem);
-    Ok(Scene { name, planet, medium, clouds, time_s, lights, camera, display: assemble_display(&file.display) })
+    let terrain = file.terrain.as_ref().map(|file| assemble_terrain(file, &planet)).transpose()?;
+    let display = assemble_display(&file.display);
+    Ok(Scene { name, planet, medium, clouds, time_s, lights, terrain, camera, display })
 }
 
 fn assemble_planet(file: &PlanetFile, preset: Preset) -> Planet {
@@ -48,6 +54,27 @@ fn assemble_planet(file: &PlanetFile, preset: Preset) -> Planet {
         atmosphere_height_m: file.atmosphere_height_m.map_or(planet.atmosphere_height_m, |height| height.get()),
         ground_albedo: file.ground_albedo.as_ref().map_or(planet.ground_albedo, |albedo| albedo.get()),
     }
+}
+
+/// Reflectance of fresh snow in visible light, about.
+const SNOW_ALBEDO: f64 = 0.8;
+
+fn assemble_terrain(file: &TerrainFile, planet: &Planet) -> Result<Terrain, Problem> {
+    let (height_m, wavelength_m) = (file.height_m.get(), file.wavelength_m.get());
+    let highest_m = (0.5 * wavelength_m).min(0.02 * planet.radius_m);
+    if height_m > highest_m {
+        let message = format!(
+            "invalid value: `{height_m}`, expected at most {highest_m}: half of wavelength_m, and a fiftieth of the planet's radius"
+        );
+        return Err(Problem::new("terrain.height_m", message));
+    }
+    let position_m = file.position_m.map_or([0.0; 2], |position| position.map(|coordinate| coordinate.get()));
+    Ok(Terrain {
+        field: HeightField::new(height_m, wavelength_m, file.seed, position_m),
+        albedo: file.albedo.as_ref().map_or(planet.ground_albedo, |albedo| albedo.get()),
+        snow_line_m: file.snow_line_m.map_or(f64::INFINITY, |altitude| altitude.get()),
+        snow_albedo: file.snow_albedo.as_ref().map_or([SNOW_ALBEDO; 3], |albedo| albedo.get()),
+    })
 }
 
 fn assemble_sun(file: &SunFile, preset: Preset) -> Result<DirectionalLight, Problem> {

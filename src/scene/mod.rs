@@ -16,6 +16,7 @@ mod moon_position;
 mod preset;
 mod read;
 mod sun_position;
+mod terrain;
 
 pub use camera::{Camera, Display, ToneMap};
 pub use direction::Direction;
@@ -26,6 +27,7 @@ pub use lit_sphere::LitSphere;
 pub use locate::Place;
 pub use preset::{Preset, PresetSun};
 pub use sun_position::{SunPositionError, sun_direction};
+pub use terrain::Terrain;
 
 use welkin_lut::cloud::CloudLayer;
 use welkin_lut::{Medium, Planet};
@@ -45,6 +47,8 @@ pub struct Scene {
     pub time_s: f64,
     /// What shines; an empty list is darkness.
     pub lights: Vec<Light>,
+    /// Hills and mountains; none where the ground is smooth.
+    pub terrain: Option<Terrain>,
     /// Where the picture is taken from, and its size.
     pub camera: Camera,
     /// How radiance becomes a PNG; does not touch the EXR.

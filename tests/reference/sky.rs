@@ -46,6 +46,7 @@ fn ray(row: &Row) -> Ray {
         view_azimuth_rad: row.number("rel_azimuth_deg").to_radians(),
         sun_zenith_rad: row.number("sza_deg").to_radians(),
         sun_azimuth_rad: 0.0,
+        distance_m: f64::INFINITY,
     }
 }
 

@@ -7,10 +7,12 @@
 mod multiple_scattering;
 mod optical_depth;
 mod sky_view;
+mod slices;
 
 pub use multiple_scattering::{LOWEST_MU_S, MultipleScatteringMapping};
 pub use optical_depth::OpticalDepthMapping;
 pub use sky_view::{SkyHalf, SkyViewMapping};
+pub use slices::SliceMapping;
 
 /// From unit coordinates to texture coordinates, in which texel i of n is centred on (i + 1/2) / n.
 pub fn texture_coordinate(unit: [f64; 2], size: [u32; 2]) -> [f64; 2] {

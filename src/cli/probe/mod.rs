@@ -23,7 +23,8 @@ const RELATIVE_ERROR: f64 = 0.005;
 /// Compute the radiance along rays from a CSV file
 ///
 /// The rays' columns are altitude_m, view_zenith_deg, view_azimuth_deg, sun_zenith_deg and sun_azimuth_deg, in any order;
-/// others are kept. The result has the same rows and radiance_r,g,b (the sun's disc left out), transmittance_r,g,b and
+/// others are kept. Where there is a column distance_m, a black surface stands at that distance and the result is the
+/// light of the air before it; inf is a ray to the ground or to space. The result has the same rows and radiance_r,g,b (the sun's disc left out), transmittance_r,g,b and
 /// stderr_r,g,b.
 #[derive(Debug, Args)]
 pub struct Arguments {

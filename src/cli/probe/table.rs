@@ -13,6 +13,9 @@ use super::error::RaysError;
 const RAY_COLUMNS: [&str; 5] =
     ["altitude_m", "view_zenith_deg", "view_azimuth_deg", "sun_zenith_deg", "sun_azimuth_deg"];
 
+/// The column that may be missing: every ray then runs to the ground or to space.
+const DISTANCE_COLUMN: &str = "distance_m";
+
 /// The columns of an answer.
 const ANSWER_COLUMNS: [&str; 9] = [
     "radiance_r",
@@ -48,12 +51,13 @@ impl RayTable {
         let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
         let header = reader.headers().map_err(csv_error)?.clone();
         let columns = find_columns(path, &header)?;
+        let distance_column = header.iter().position(|name| name == DISTANCE_COLUMN);
         // Just above the centre, where directions still have a vertical.
         let altitudes = -planet_radius_m * (1.0 - 1e-9)..=HIGHEST_M;
         let (mut rows, mut rays) = (Vec::new(), Vec::new());
         for row in reader.records() {
             let row = row.map_err(csv_error)?;
-            rays.push(ray(path, &row, columns, &altitudes)?);
+            rays.push(ray(path, &row, columns, distance_column, &altitudes)?);
             rows.push(row);
         }
         Ok(Self { header, rows, rays })
@@ -98,18 +102,27 @@ fn ray(
     path: &Path,
     row: &StringRecord,
     columns: [usize; 5],
+    distance_column: Option<usize>,
     altitudes: &RangeInclusive<f64>,
 ) -> Result<Ray, RaysError> {
+    let refused = |column: &'static str, text: &str, allowed: String| RaysError::Value {
+        path: path.to_owned(),
+        line: row.position().map_or(0, csv::Position::line),
+        column,
+        value: text.to_owned(),
+        allowed,
+    };
     let value = |field: usize, range: &RangeInclusive<f64>| {
         let text = &row[columns[field]];
-        text.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| RaysError::Value {
-            path: path.to_owned(),
-            line: row.position().map_or(0, csv::Position::line),
-            column: RAY_COLUMNS[field],
-            value: text.to_owned(),
-            allowed: format!("a number from {} to {}", range.start(), range.end()),
+        text.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| {
+            refused(RAY_COLUMNS[field], text, format!("a number from {} to {}", range.start(), range.end()))
         })
     };
+    let distance_m = distance_column.map_or(Ok(f64::INFINITY), |column| {
+        let text = &row[column];
+        let distance = text.parse().ok().filter(|&distance: &f64| distance > 0.0);
+        distance.ok_or_else(|| refused(DISTANCE_COLUMN, text, "a number above 0, or inf".to_owned()))
+    })?;
     let (zenith, azimuth) = (0.0..=180.0, -360.0..=360.0);
     Ok(Ray {
         altitude_m: value(0, altitudes)?,
@@ -117,5 +130,6 @@ fn ray(
         view_azimuth_rad: value(2, &azimuth)?.to_radians(),
         sun_zenith_rad: value(3, &zenith)?.to_radians(),
         sun_azimuth_rad: value(4, &azimuth)?.to_radians(),
+        distance_m,
     })
 }

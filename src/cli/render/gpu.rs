@@ -1,7 +1,11 @@
 //! Rendering in real time.
 
+use std::path::Path;
+
+use welkin::foreground::{Depth, Foreground};
+use welkin::output::{DEPTH_CHANNELS, read_exr, read_exr_channel};
 use welkin::plan::{Outputs, Settings};
-use welkin::scene::Scene;
+use welkin::scene::{Camera, Scene};
 
 use super::{Arguments, Rendered};
 use crate::cli::Failure;
@@ -9,9 +13,15 @@ use crate::cli::backend::{failure, open_renderer};
 use crate::cli::pass_table::Statistics;
 
 pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<Rendered, Failure> {
+    let foreground = read_foreground(arguments, &scene.camera)?;
     let quality = arguments.quality.unwrap_or_default();
     let mut renderer = open_renderer(arguments.device.as_deref())?;
-    let rendered = renderer.render(scene, Settings::of(quality), outputs).map_err(failure)?;
+    let settings = Settings::of(quality);
+    let rendered = match &foreground {
+        Some(foreground) => renderer.render_over(scene, settings, outputs, foreground),
+        None => renderer.render(scene, settings, outputs),
+    };
+    let rendered = rendered.map_err(failure)?;
     let statistics = Statistics::new(&scene.name, quality, Some(renderer.gpu().info()), &rendered.timings);
     Ok(Rendered {
         frame: rendered.frame,
@@ -19,4 +29,27 @@ pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<
         text: statistics.to_text(),
         json: statistics.to_json(),
     })
+}
+
+/// What stands before the camera, if the user names it.
+fn read_foreground(arguments: &Arguments, camera: &Camera) -> Result<Option<Foreground>, Failure> {
+    let Some(path) = &arguments.depth else { return Ok(None) };
+    let plane = read_exr_channel(path, &DEPTH_CHANNELS)?;
+    let check = |path: &Path, (width, height): (u32, u32)| match (width, height) == (camera.width, camera.height) {
+        true => Ok(()),
+        false => Err(Failure::Input(anyhow::anyhow!(
+            "'{}' has {width} x {height} pixels; the scene's camera has {} x {}",
+            path.display(),
+            camera.width,
+            camera.height
+        ))),
+    };
+    check(path, (plane.width, plane.height))?;
+    let colour = arguments.colour.as_deref().map(|path| {
+        let frame = read_exr(path)?;
+        check(path, (frame.width, frame.height)).map(|()| frame.radiance)
+    });
+    let depth = if arguments.planar_depth { Depth::Planar } else { Depth::Distance };
+    let foreground = Foreground::new(camera, depth, &plane.values, colour.transpose()?.as_deref());
+    foreground.map(Some).map_err(|error| Failure::Input(error.into()))
 }

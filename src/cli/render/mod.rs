@@ -36,6 +36,16 @@ pub struct Arguments {
     /// Walks of the reference backend for each pixel [default: 256]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..))]
     samples: Option<u64>,
+    /// Surfaces of another renderer, before which the air is drawn: an EXR file with the distance along each pixel's ray
+    /// in metres (channel distance_m, Z, depth, Y or R), infinite where the sky is; gpu backend
+    #[arg(long, value_name = "EXR")]
+    depth: Option<PathBuf>,
+    /// The depth is measured along the camera's axis instead of the pixel's ray
+    #[arg(long, requires = "depth")]
+    planar_depth: bool,
+    /// Radiance of those surfaces, an EXR file with R, G and B in W/(m2 sr nm); without it they are black
+    #[arg(long, value_name = "EXR", requires = "depth")]
+    colour: Option<PathBuf>,
     /// Write what was computed, and how long it took, to a JSON file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -63,6 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.backend.check_options(&[
         ("--quality", Backend::Gpu, arguments.quality.is_some()),
         ("--device", Backend::Gpu, arguments.device.is_some()),
+        ("--depth", Backend::Gpu, arguments.depth.is_some()),
         ("--samples", Backend::Reference, arguments.samples.is_some()),
     ])?;
     let scene = Scene::read(&arguments.scene)?;

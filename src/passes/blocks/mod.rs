@@ -6,6 +6,7 @@ mod clouds;
 mod emission;
 mod observer;
 mod quadrature;
+mod terrain;
 
 pub use atmosphere::{atmosphere_block, legendre_moments, lobe_count};
 pub use camera::CameraBlock;
@@ -13,6 +14,7 @@ pub use clouds::{cloud_layers, cloud_matter, cloud_term_count, cloud_terms};
 pub use emission::{ZONAL_COUNT, emission_block, emission_breakpoints_m};
 pub use observer::observer_block;
 pub use quadrature::{GaussNodeBlock, cosine_nodes, gauss_nodes};
+pub use terrain::height_field_block;
 
 use welkin_lut::Bands;
 
@@ -27,6 +29,7 @@ mod tests {
     use super::clouds::{CloudMatterBlock, CloudTermBlock};
     use super::emission::EmitterBlock;
     use super::observer::{DirectionalLightBlock, ObserverHeader, SkyViewRangeBlock};
+    use super::terrain::{HeightFieldHeader, OctaveBlock};
     use super::*;
     use crate::passes::definitions;
     use crate::plan::{Facts, Outputs, Quality, Settings};
@@ -87,6 +90,9 @@ mod tests {
         let emission = shader("view_emission");
         assert_layout!(emission, "Emitter", EmitterBlock, [emission_per_m, profile_a, profile_b]);
         assert_eq!(size(&emission, "Emitter"), size_of::<EmitterBlock>());
+        let terrain = shader("terrain");
+        assert_layout!(terrain, "Octave", OctaveBlock, [to_cells, fraction, cell, wavelength_m, share, key]);
+        assert_eq!(size(&terrain, "Octave"), size_of::<OctaveBlock>());
         let gauss = shader("first_order");
         assert_layout!(gauss, "GaussNode", GaussNodeBlock, [abscissa, weight]);
         assert_eq!(size(&gauss, "GaussNode"), size_of::<GaussNodeBlock>());
@@ -140,5 +146,7 @@ mod tests {
         let end = |name: &str| offsets(&compose, name).last().cloned().unwrap();
         assert_eq!(end("Observer"), ("lights".to_owned(), size_of::<ObserverHeader>()));
         assert_eq!(end("Atmosphere"), ("constituents".to_owned(), size_of::<AtmosphereHeader>()));
+        let octaves = offsets(&shader("terrain"), "HeightField").last().cloned().unwrap();
+        assert_eq!(octaves, ("octaves".to_owned(), size_of::<HeightFieldHeader>()));
     }
 }

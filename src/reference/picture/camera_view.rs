@@ -56,7 +56,7 @@ impl CameraView {
             let pixel = film.shard.pixel(number);
             let direction = self.direction(pixel, 0.0, 0.0);
             let transmittance = transport::transmittance(&self.world, self.position(), direction);
-            let span = self.world.shape.span(self.position(), direction).filter(|span| span.end == End::Ground);
+            let span = self.world.span(self.position(), direction).filter(|span| span.end == End::Ground);
             if let Some(span) = span {
                 frame.distance_m[pixel] = span.end_m as f32;
             }
@@ -72,7 +72,9 @@ impl CameraView {
     }
 
     fn position(&self) -> DVec3 {
-        DVec3::new(0.0, 0.0, self.camera.altitude_m.max(0.0))
+        let altitude_m = self.camera.altitude_m.max(0.0);
+        let eye_m = self.world.relief.as_ref().map_or(altitude_m, |relief| relief.eye_altitude_m(altitude_m));
+        DVec3::new(0.0, 0.0, eye_m)
     }
 
     /// Through a point of a pixel, in pixels from its centre.

@@ -59,8 +59,10 @@ impl Identity {
     /// Of one part of a scene's picture.
     pub fn new(scene: &Scene, solver: &Solver, seed: u64, sampling: &Sampling, shard: Shard) -> Self {
         // Debug prints every number so that it reads back as the same bits. Name and display do not touch radiance.
-        let problem =
-            format!("{:?}", (&scene.planet, &scene.medium, &scene.clouds, scene.time_s, &scene.lights, &scene.camera));
+        let problem = format!(
+            "{:?}",
+            (&scene.planet, &scene.medium, &scene.clouds, scene.time_s, &scene.lights, &scene.terrain, &scene.camera)
+        );
         Self {
             scene: scene.name.clone(),
             fingerprint: Fingerprint::of(&problem),

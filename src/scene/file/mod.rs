@@ -6,12 +6,14 @@ mod medium;
 mod moon;
 pub mod number;
 mod per_band;
+mod terrain;
 
 pub use clouds::CloudFile;
 pub use light::{LightsFile, SunFile, WhenFile};
 pub use medium::{ConstituentChange, ConstituentFile, MediumFile, PhaseFile, ProfileFile};
 pub use moon::MoonFile;
 pub use per_band::PerBand;
+pub use terrain::TerrainFile;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -44,6 +46,8 @@ pub struct SceneFile {
     /// Lights besides the sun.
     #[serde(default)]
     pub light: LightsFile,
+    /// Hills and mountains on the planet; without it the ground is smooth.
+    pub terrain: Option<TerrainFile>,
     /// Where the picture is taken from.
     pub camera: CameraFile,
     /// How radiance becomes a picture; does not touch an EXR file.

@@ -138,6 +138,8 @@ macro_rules! intervals {
 intervals! {
     /// A length that is not zero, m: up to the size of a star.
     Length: Excluded(0.0), Included(1e10);
+    /// The height of mountains, or the distance between them, m.
+    TerrainLength: Excluded(0.0), Included(1e6);
     /// An altitude or a coordinate, m.
     Altitude: Included(-1e10), Included(1e10);
     /// A coefficient, 1/m, or a factor on one.

@@ -1,0 +1,147 @@
+// Pass: the froxels, for every direction and light: one march along each ray fills all of its slices.
+//
+// A slice is integrated by two Gauss nodes, and cut where the whole ray is: at its lowest point and at the planet's
+// shadow. What is stored is explained in welkin::aerial.
+//
+// Definitions: SLICE_COUNT.
+
+#import welkin::aerial::{opacity, opacity_ratio}
+#import welkin::atmosphere::{atmosphere, densities, extinction_at, SCATTERER_COUNT}
+#import welkin::mapping
+#import welkin::march::{altitude_at, cut_at_shadow, local_directions, view_ray, AirRay, LEG_COUNT, Node}
+#import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
+#import welkin::sky::{multiple_scattering_table, LAYER_COUNT, MULTIPLE_LAYER, SINGLE_LAYER}
+#import welkin::tables::{multiply_scattered_source, optical_depth_to_top}
+
+@group(0) @binding(30) var froxel_light_image: texture_storage_3d<rgba16float, write>;
+
+const SLICE_COUNT: u32 = #{SLICE_COUNT}u;
+// Below this, light is dark.
+const DARK: f32 = 1e-30;
+// The range of ratios that are kept.
+const SMALLEST: f32 = 1e-6;
+const LARGEST: f32 = 1e4;
+// Gauss-Legendre nodes on [0, 1], of equal weight.
+const NODES: array<f32, 2> = array<f32, 2>(0.21132486540518712, 0.7886751345948129);
+
+// Where a march stands, and what it has gathered: light as in the layers of the sky view.
+struct March {
+    distance_m: f32,
+    extinction_per_m: vec3<f32>,
+    tau: vec3<f32>,
+    light: array<vec3<f32>, LAYER_COUNT>,
+}
+
+// What a point sends towards the observer per metre, layer by layer.
+fn sources(ray: AirRay, node: Node, dark: bool) -> array<vec3<f32>, LAYER_COUNT> {
+    var source: array<vec3<f32>, LAYER_COUNT>;
+    let local = local_directions(ray, node);
+    var density = densities(node.altitude_m);
+#ifdef MULTIPLE_SCATTERING
+    source[MULTIPLE_LAYER] = multiply_scattered_source(multiple_scattering_table, node.altitude_m, local, density);
+#endif
+    if !dark {
+        let lit = exp(-optical_depth_to_top(node.altitude_m, local.mu_s));
+        for (var c = 0u; c < SCATTERER_COUNT; c++) {
+            source[SINGLE_LAYER + c] = density[c] * atmosphere.constituents[c].scattering_per_m * lit;
+        }
+    }
+    return source;
+}
+
+// Moves on and adds the optical depth of the way, by Simpson's rule.
+fn move_to(march: ptr<function, March>, ray: AirRay, distance_m: f32) {
+    let step_m = distance_m - (*march).distance_m;
+    let middle = extinction_at(altitude_at(ray, distance_m - 0.5 * step_m));
+    let end = extinction_at(altitude_at(ray, distance_m));
+    (*march).tau += step_m / 6.0 * ((*march).extinction_per_m + 4.0 * middle + end);
+    (*march).extinction_per_m = end;
+    (*march).distance_m = distance_m;
+}
+
+fn is_dark(ray: AirRay, distance_m: f32) -> bool {
+    return distance_m > ray.shadow_m.x && distance_m < ray.shadow_m.y;
+}
+
+// Adds a stretch without kinks.
+fn march_to(march: ptr<function, March>, ray: AirRay, end_m: f32) {
+    let start_m = (*march).distance_m;
+    let length_m = end_m - start_m;
+    if length_m <= 0.0 {
+        return;
+    }
+    let dark = is_dark(ray, start_m + 0.5 * length_m);
+    var nodes = NODES;
+    for (var n = 0u; n < 2u; n++) {
+        let at_m = start_m + nodes[n] * length_m;
+        move_to(march, ray, at_m);
+        var source = sources(ray, Node(at_m, altitude_at(ray, at_m), 0.5 * length_m), dark);
+        let weight_m = 0.5 * length_m * exp(-(*march).tau);
+        for (var k = 0u; k < LAYER_COUNT; k++) {
+            (*march).light[k] += weight_m * source[k];
+        }
+    }
+    move_to(march, ray, end_m);
+}
+
+// Part over whole; of nothing, nothing.
+fn ratio(part: vec3<f32>, whole: vec3<f32>) -> vec3<f32> {
+    let none = whole <= vec3<f32>(DARK);
+    return select(part / select(whole, vec3<f32>(1.0), none), vec3<f32>(0.0), none);
+}
+
+// x, y: direction, of each light and each half of the view sphere.
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let size = textureDimensions(froxel_light_image);
+    if any(id.xy >= size.xy) {
+        return;
+    }
+    let columns = vec2<u32>(size.x / LIGHT_COUNT, size.y / 2u);
+    let light = id.x / columns.x;
+    let below_horizon = id.y >= columns.y;
+    let unit = mapping::unit_from_texel(id.xy % columns, vec2<f32>(columns));
+    let view = mapping::sky_view_from_unit(unit, below_horizon, observer.view);
+    let mu = cos(view.zenith_rad);
+    let mu_s = light_mu_s(light);
+    let sines = sin(view.zenith_rad) * sqrt(max(1.0 - mu_s * mu_s, 0.0));
+    let nu = clamp(mu * mu_s + sines * cos(view.azimuth_rad), -1.0, 1.0);
+    let ray = cut_at_shadow(view_ray(observer.altitude_m, mu, mu_s, nu, below_horizon));
+    // A ray that only touches the air has a length yet, so that its neighbours have something to interpolate with.
+    let length_m = max(ray.length_m, 1e-3);
+    let slices = mapping::slices_of(length_m, ray.tangent_m);
+
+    var march: March;
+    march.extinction_per_m = extinction_at(ray.altitude_m);
+    // At the observer: ratios of the first metres.
+    var source = sources(ray, Node(0.0, ray.altitude_m, 0.0), is_dark(ray, 0.0));
+    var light_before: array<array<vec3<f32>, LAYER_COUNT>, SLICE_COUNT>;
+    var tau_before: array<vec3<f32>, SLICE_COUNT>;
+    for (var k = 0u; k < LAYER_COUNT; k++) {
+        light_before[0][k] = ratio(source[k], march.extinction_per_m);
+    }
+    for (var slice = 1u; slice < SLICE_COUNT; slice++) {
+        let end_m = slice_distance(slice, slices);
+        for (var cut = 0u; cut < LEG_COUNT; cut++) {
+            march_to(&march, ray, min(ray.leg_ends_m[cut], end_m));
+        }
+        light_before[slice] = march.light;
+        tau_before[slice] = march.tau;
+    }
+    for (var slice = 0u; slice < SLICE_COUNT; slice++) {
+        var over_opacity = opacity(march.tau);
+        if slice > 0u {
+            let share_of_way = slice_distance(slice, slices) / length_m;
+            over_opacity = ratio(vec3<f32>(1.0), opacity_ratio(tau_before[slice], march.tau, share_of_way));
+        }
+        for (var k = 0u; k < LAYER_COUNT; k++) {
+            let relative = ratio(light_before[slice][k], march.light[k]) * over_opacity;
+            let value = log(clamp(relative, vec3<f32>(SMALLEST), vec3<f32>(LARGEST)));
+            textureStore(froxel_light_image, vec3<u32>(id.xy, k * SLICE_COUNT + slice), vec4<f32>(value, 0.0));
+        }
+    }
+}
+
+fn slice_distance(slice: u32, slices: mapping::Slices) -> f32 {
+    return mapping::slice_distance_m(f32(slice) / f32(SLICE_COUNT - 1u), slices);
+}

@@ -1,0 +1,50 @@
+//! Mountains before the sky: their distance and the light that they send.
+
+use super::{Pass, Recording, RenderError};
+use crate::gpu::{ImageFormat, ImageShape, Work};
+use crate::plan::{Declaration, Facts, Fingerprint, Need, Surface};
+
+const NAME: &str = "terrain";
+
+/// The pass.
+pub const PASS: Pass = Pass {
+    declaration: Declaration {
+        name: NAME,
+        need,
+        reads: &["optical_depth_table", "multiple_scattering_table"],
+        writes: &["terrain_image"],
+        inputs: |facts| {
+            let scene = facts.scene;
+            Fingerprint::of(&(&scene.terrain, &scene.camera, &facts.lights, &scene.planet))
+        },
+        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+    },
+    record,
+};
+
+fn shape(facts: &Facts) -> ImageShape {
+    ImageShape::D2(facts.scene.camera.width, facts.scene.camera.height)
+}
+
+fn need(facts: &Facts) -> Need {
+    let Some(terrain) = &facts.scene.terrain else {
+        return Need::NotNeeded("the ground is smooth".to_owned());
+    };
+    if facts.surface != Some(Surface::Terrain) {
+        return Need::NotNeeded("the host's surfaces stand in place of the mountains".to_owned());
+    }
+    let (height_m, altitude_m) = (terrain.field.height_m, facts.scene.camera.altitude_m);
+    let ground_m = terrain.height_below_camera_m();
+    Need::Needed(match altitude_m < ground_m {
+        true => format!(
+            "the camera at {altitude_m} m is inside a mountain: one sees what one sees standing on it, {ground_m:.0} m high"
+        ),
+        false => format!("mountains up to {height_m} m; the camera is {:.0} m above the ground", altitude_m - ground_m),
+    })
+}
+
+fn record(recording: &mut Recording) -> Result<(), RenderError> {
+    let shape = shape(recording.facts);
+    recording.resources.image("terrain_image", shape, ImageFormat::Rgba32Float)?;
+    recording.dispatch(NAME, &[], &[], Work::Invocations(shape.extent()))
+}
