@@ -1,6 +1,7 @@
 //! The real-time sky against tables that other codes made: every row, every quality; prints Markdown.
 //!
-//! `cargo run --release --example validate_sky [QUALITY...]`
+//! `cargo run --release --example validate_sky [QUALITY...] [METHOD...]`, where a method is a treatment of multiple scattering
+//! by its name: then only light of all orders is compared.
 
 #[path = "../tests/reference/sky.rs"]
 mod sky;
@@ -10,7 +11,7 @@ mod tables;
 use std::time::Instant;
 
 use welkin::gpu::DeviceRequest;
-use welkin::plan::{Quality, Settings};
+use welkin::plan::{MultipleScattering, Quality, Settings};
 use welkin::probe::Orders;
 use welkin::renderer::Renderer;
 
@@ -23,25 +24,44 @@ const COMPARISONS: [(&str, Orders, &str, &[f64]); 4] = [
 ];
 
 fn main() {
-    let named: Vec<Quality> =
-        std::env::args().skip(1).map(|name| name.parse().unwrap_or_else(|e| panic!("{e}"))).collect();
-    let qualities = if named.is_empty() { Quality::ALL.to_vec() } else { named };
+    let mut qualities: Vec<Quality> = Vec::new();
+    let mut methods: Vec<MultipleScattering> = Vec::new();
+    for name in std::env::args().skip(1) {
+        match (name.parse(), name.parse()) {
+            (Ok(quality), _) => qualities.push(quality),
+            (_, Ok(method)) => methods.push(method),
+            (Err(not_a_quality), Err(not_a_method)) => panic!("{not_a_quality}; {not_a_method}"),
+        }
+    }
+    if qualities.is_empty() {
+        qualities = Quality::ALL.to_vec();
+    }
+    let all_comparisons = methods.is_empty();
+    let comparisons = COMPARISONS.iter().filter(|(_, orders, _, _)| all_comparisons || *orders == Orders::All);
+    if methods.is_empty() {
+        methods.push(MultipleScattering::Auto);
+    }
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
     let info = renderer.gpu().info();
     println!("Device: {} ({} {}).\n", info.name, info.driver, info.driver_version);
     println!("| table | orders | quality | sun 0-90°: median / p99 / max % | p99 % by lower sun | s |");
     println!("|---|---|---|---|---|---|");
-    for (file, orders, column, night) in COMPARISONS {
+    for &(file, orders, column, night) in comparisons {
         let rows = tables::read(file);
-        for &quality in &qualities {
+        for (&quality, &multiple_scattering) in qualities.iter().flat_map(|q| methods.iter().map(move |m| (q, m))) {
             let started = Instant::now();
-            let found = sky::answers(&mut renderer, &rows, Settings::of(quality), orders, |_| {});
+            let settings = Settings { multiple_scattering, ..Settings::of(quality) };
+            let found = sky::answers(&mut renderer, &rows, settings, orders, |_| {});
             let errors = sky::errors(&rows, &found, column);
             let day = [0.5, 0.99, 1.0].map(|q| format!("{:.3}", errors.quantile(q, 0.0..=90.0))).join(" / ");
             let low: Vec<_> =
                 night.iter().map(|&sun| format!("{sun}°: {:.2}", errors.quantile(0.99, sun..=sun))).collect();
             let seconds = started.elapsed().as_secs_f64();
-            println!("| {file} | {orders:?} | {quality} | {day} | {} | {seconds:.0} |", low.join(", "));
+            let method = match multiple_scattering {
+                MultipleScattering::Auto => String::new(),
+                named => format!(", {named}"),
+            };
+            println!("| {file} | {orders:?} | {quality}{method} | {day} | {} | {seconds:.0} |", low.join(", "));
         }
     }
 }

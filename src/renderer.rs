@@ -140,9 +140,7 @@ impl Renderer {
     fn execute(&mut self, label: &str, facts: &Facts, passes: &[&Pass], rays: usize) -> Result<Timings, RenderError> {
         let declarations: Vec<_> = passes.iter().map(|pass| pass.declaration).collect();
         let plan = Plan::new(facts, &self.history, &declarations);
-        for pass in passes.iter().filter(|pass| plan.decision(pass.declaration.name) == Some(Decision::Skip)) {
-            pass.declaration.writes.iter().for_each(|name| self.resources.release(name));
-        }
+        self.release_what_nobody_writes(&plan, passes);
         let mut recording = Recording::new(label, facts, &mut self.resources)?;
         for pass in passes.iter().filter(|pass| plan.decision(pass.declaration.name) == Some(Decision::Run)) {
             (pass.record)(&mut recording)?;
@@ -157,6 +155,15 @@ impl Renderer {
             *milliseconds.entry(time.label).or_insert(0.0) += time.milliseconds;
         }
         Ok(Timings { plan, milliseconds, clock: completed.clock })
+    }
+
+    /// Frees what skipped passes have left, but what another pass writes under the same name.
+    fn release_what_nobody_writes(&mut self, plan: &Plan, passes: &[&Pass]) {
+        let skipped = |pass: &&&Pass| plan.decision(pass.declaration.name) == Some(Decision::Skip);
+        let written: Vec<_> =
+            passes.iter().filter(|pass| !skipped(pass)).flat_map(|pass| pass.declaration.writes).collect();
+        let left = passes.iter().filter(skipped).flat_map(|pass| pass.declaration.writes);
+        left.filter(|name| !written.contains(name)).for_each(|name| self.resources.release(name));
     }
 
     fn read_back(&self, facts: &Facts) -> Result<(Frame, Option<Vec<u8>>), RenderError> {

@@ -25,8 +25,11 @@ fn plan(scene: &Scene) -> Plan {
 const OF_OTHER_SCENES: [&str; 5] =
     ["emission_order", "view_emission", "aerial_optical_depth", "aerial_perspective", "terrain"];
 
+/// The passes of other treatments of multiply scattered light than that of the hazy noon; tests/treatment.rs has the rule.
+const OTHER_TREATMENTS: [&str; 3] = ["first_order", "higher_order", "isotropic_series"];
+
 /// The passes that directional lights call for.
-const LIT: [&str; 3] = ["first_order", "higher_order", "sky_view"];
+const LIT: [&str; 6] = ["first_order", "higher_order", "isotropic_series", "first_source", "higher_source", "sky_view"];
 
 /// What is skipped besides the passes of other scenes.
 fn skipped_of_sunlight(plan: &Plan) -> Vec<&'static str> {
@@ -59,7 +62,7 @@ fn render(scenes: &[Scene]) -> Vec<Rendered> {
 #[test]
 fn a_clear_day_runs_all_that_sunlight_takes_and_every_reason_says_something() {
     let plan = plan(&noon());
-    assert_eq!(names(&plan, Decision::Skip), OF_OTHER_SCENES);
+    assert_eq!(names(&plan, Decision::Skip), [&OTHER_TREATMENTS[..], &OF_OTHER_SCENES].concat());
     assert!(plan.passes.iter().all(|pass| !pass.reason.is_empty()));
     assert!(plan.passes.iter().all(|pass| (pass.bytes > 0) == (pass.decision == Decision::Run)));
 }
@@ -91,7 +94,7 @@ fn air_that_only_absorbs_needs_no_multiple_scattering() {
     }
     let plan = plan(&scene);
     assert_eq!(skipped_of_sunlight(&plan), LIT);
-    assert!(reason(&plan, "first_order").contains("scatters"));
+    assert!(reason(&plan, "first_source").contains("scatters"));
     let frame = &render(&[scene])[0].frame;
     assert_eq!(frame.radiance[16], [0.0; 3]);
     // The sun still lights the ground through the air.
@@ -138,7 +141,7 @@ fn what_depends_on_nothing_that_changed_is_reused_and_gives_the_same_picture() {
     assert!(ran(1).is_empty());
     assert_eq!(ran(2), ["compose", "display"]);
     assert_eq!(ran(3), ["sky_view", "compose", "display"]);
-    assert_eq!(ran(4), ["first_order", "higher_order", "sky_view", "compose", "display"]);
+    assert_eq!(ran(4), ["first_source", "higher_source", "sky_view", "compose", "display"]);
     assert_eq!(rendered[0].frame, rendered[1].frame);
     assert_eq!(rendered[0].frame, rendered[5].frame);
     // Negative control: what did change is seen.
@@ -154,7 +157,7 @@ fn another_quadrature_is_another_result() {
     renderer.render(&noon(), settings, PICTURE).unwrap();
     let finer = Settings { nodes_per_leg: settings.nodes_per_leg + 1, ..settings };
     let plan = renderer.render(&noon(), finer, PICTURE).unwrap().timings.plan;
-    for name in ["first_order", "higher_order", "sky_view", "compose"] {
+    for name in ["first_source", "higher_source", "sky_view", "compose"] {
         assert_eq!(plan.decision(name), Some(Decision::Run), "{name}");
     }
 }

@@ -64,6 +64,22 @@ impl DensityProfile {
         }
     }
 
+    /// ∫ density dh from the ground to an altitude: metres of air at density 1.
+    pub fn column_m(&self, top_m: f64) -> f64 {
+        match *self {
+            Self::Exponential { scale_height_m } => -scale_height_m * (-top_m / scale_height_m).exp_m1(),
+            Self::Tent { centre_m, half_width_m } => {
+                // Of the rising or falling half, the share below an offset from the centre.
+                let below = |h: f64| {
+                    let x = ((h - centre_m) / half_width_m).clamp(-1.0, 1.0);
+                    half_width_m * (0.5 + x - 0.5 * x * x.abs())
+                };
+                below(top_m) - below(0.0)
+            }
+            Self::Layer { bottom_m, top_m: end_m } => (end_m.min(top_m) - bottom_m.max(0.0)).max(0.0),
+        }
+    }
+
     /// The largest relative density between two altitudes, a bound that holds exactly.
     pub fn majorant(&self, low_m: f64, high_m: f64) -> f64 {
         match *self {
@@ -134,6 +150,20 @@ mod tests {
                     assert!(density <= profile.majorant(low, high), "{profile:?} at {low}");
                     assert!(density >= profile.minorant(low, high), "{profile:?} at {low}");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn a_column_is_the_integral_of_density() {
+        for profile in PROFILES {
+            for top_m in [0.0, 500.0, 20_000.0, 30_000.0, 100_000.0] {
+                let n = 200_000;
+                let step_m = top_m / f64::from(n);
+                let sum: f64 = (0..n).map(|i| profile.density((f64::from(i) + 0.5) * step_m)).sum();
+                // A jump of density can fall anywhere in a step.
+                let error_m = (profile.column_m(top_m) - sum * step_m).abs();
+                assert!(error_m <= step_m, "{profile:?} to {top_m} m: {error_m} m off");
             }
         }
     }

@@ -11,6 +11,7 @@
 //   SCATTERING_EXPONENTIAL_END, SCATTERING_TENT_END, SCATTERER_COUNT,
 //   ABSORBING_EXPONENTIAL_END, ABSORBING_TENT_END   where each group ends in the array
 //   LOBE_COUNT          lobes of the most complex phase function
+//   PROFILE_GROUP_COUNT groups of scatterers that share a density profile
 
 const PI: f32 = 3.14159265358979;
 const CONSTITUENT_COUNT: u32 = #{CONSTITUENT_COUNT}u;
@@ -24,6 +25,7 @@ const CONSTITUENT_SLOTS: u32 = max(CONSTITUENT_COUNT, 1u);
 const SCATTERER_SLOTS: u32 = max(SCATTERER_COUNT, 1u);
 const LOBE_COUNT: u32 = #{LOBE_COUNT}u;
 const MAX_LOBES: u32 = 2u;
+const PROFILE_GROUP_COUNT: u32 = #{PROFILE_GROUP_COUNT}u;
 
 // scale * (1 + quadratic nu²) * (gap + slope (1 - nu))^(-exponent): Henyey-Greenstein, Rayleigh, Cornette-Shanks,
 // Draine and Schlick are all of this form. gap is (1 - g)² exactly, so that the peak survives f32.
@@ -46,6 +48,11 @@ struct Constituent {
     // exponential: unused; tent: 1 / half width; layer: top
     profile_b: f32,
     lobes: array<PhaseLobe, MAX_LOBES>,
+    // Of scatterers: which of the groups that share a density profile.
+    profile_group: u32,
+    padding_a: u32,
+    padding_b: u32,
+    padding_c: u32,
 }
 
 struct Atmosphere {

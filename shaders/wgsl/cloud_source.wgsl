@@ -13,10 +13,9 @@
 #import welkin::cloud_grid::{cell_m, grid_sample, level_of, local_direction, Part}
 #import welkin::cloud_matter::{cloud_matter, CloudMatter}
 #import welkin::geometry::horizon_mu
-#import welkin::mapping
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::sky::multiple_scattering_table
-#import welkin::tables::{optical_depth_to_top, table_sampler}
+#import welkin::tables::{mean_field, optical_depth_to_top, table_sampler}
 
 const TERM_COUNT: u32 = #{CLOUD_TERM_COUNT}u;
 const TERM_LOBES: u32 = 4u;
@@ -100,13 +99,11 @@ struct Surroundings {
 fn surroundings(altitude_m: f32, mu_s: f32, irradiance: vec3<f32>) -> Surroundings {
     var around: Surroundings;
 #ifdef MULTIPLE_SCATTERING
-    let unit = mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m);
-    let uv = mapping::inset(unit, vec2<f32>(textureDimensions(multiple_scattering_table)));
-    let mean = 0.282094792 * exp(textureSampleLevel(multiple_scattering_table, table_sampler, uv, 0, 0.0).rgb);
+    let field = mean_field(multiple_scattering_table, altitude_m, mu_s);
     // Over a half sphere the first zonal harmonic's mean is half its value at the pole: √3 / 2 in units of the mean.
-    let tilt = 0.866025404 * textureSampleLevel(multiple_scattering_table, table_sampler, uv, 1, 0.0).rgb;
-    around.above = irradiance * mean * max(1.0 + tilt, vec3<f32>(0.0));
-    around.below = irradiance * mean * max(1.0 - tilt, vec3<f32>(0.0));
+    let tilt = 0.866025404 * field.tilt;
+    around.above = irradiance * field.radiance * max(1.0 + tilt, vec3<f32>(0.0));
+    around.below = irradiance * field.radiance * max(1.0 - tilt, vec3<f32>(0.0));
 #endif
     return around;
 }

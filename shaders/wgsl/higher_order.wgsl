@@ -3,15 +3,13 @@
 // Adds what it finds to the sum of all orders. The last pass (definition CLOSE_SERIES) adds the rest of the series:
 // from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric.
 
-#import welkin::atmosphere::{atmosphere, densities, PI}
+#import welkin::atmosphere::atmosphere
 #import welkin::directions::{direction_of, field, irradiance, project, DIRECTION_COUNT, INVOCATION_COUNT}
+#import welkin::field_radiance::{next_order_radiance, ray_from}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
-#import welkin::march::{
-    air_ray, ground_mu_s, leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, AirRay, LEG_COUNT, NODE_COUNT
-}
 #import welkin::spherical_harmonics::COEFFICIENT_COUNT
-#import welkin::tables::{diffuse_ground_irradiance, multiply_scattered_source, IRRADIANCE_LAYER}
+#import welkin::tables::IRRADIANCE_LAYER
 
 @group(0) @binding(6) var previous_order: texture_2d_array<f32>;
 @group(0) @binding(7) var previous_sum: texture_2d_array<f32>;
@@ -24,30 +22,6 @@
 const DARK: f32 = 1e-30;
 // The largest ratio between orders that the tail believes.
 const MAX_RATIO: f32 = 0.9;
-
-fn scattered_once_more(ray: AirRay, hits_ground: bool) -> vec3<f32> {
-    var tau = vec3<f32>(0.0);
-    var radiance = vec3<f32>(0.0);
-    for (var i = 0u; i < LEG_COUNT; i++) {
-        var leg = leg_of(ray, i);
-        if leg_is_empty(leg) {
-            continue;
-        }
-        for (var n = 0u; n < NODE_COUNT; n++) {
-            let node = leg_advance(&leg, ray, n, &tau);
-            let local = local_directions(ray, node);
-            let density = densities(node.altitude_m);
-            let source = multiply_scattered_source(previous_order, node.altitude_m, local, density);
-            radiance += node.weight_m * exp(-tau) * source;
-        }
-        leg_finish(&leg, ray, &tau);
-    }
-    if hits_ground {
-        let irradiance = diffuse_ground_irradiance(previous_order, ground_mu_s(ray));
-        radiance += exp(-tau) * atmosphere.ground_albedo / PI * irradiance;
-    }
-    return radiance;
-}
 
 // The whole series from this order on, relative to this order.
 fn remainder(this_order: vec3<f32>, order_before: vec3<f32>) -> vec3<f32> {
@@ -76,10 +50,8 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
     let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
     for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
         let direction = direction_of(i, mu_h);
-        let sines = sqrt(max((1.0 - direction.mu * direction.mu) * (1.0 - mu_s * mu_s), 0.0));
-        let nu = clamp(direction.mu * mu_s + sines * direction.cos_phi, -1.0, 1.0);
-        let ray = air_ray(here.altitude_m, direction.mu, mu_s, nu, direction.hits_ground);
-        field[i] = scattered_once_more(ray, direction.hits_ground);
+        let ray = ray_from(here.altitude_m, mu_s, direction.mu, direction.cos_phi, direction.hits_ground);
+        field[i] = next_order_radiance(previous_order, ray, direction.hits_ground);
     }
     workgroupBarrier();
     if invocation == 0u {

@@ -6,7 +6,7 @@
 //   mu         cosine of the zenith angle;  cos_phi: cosine of the azimuth from the light
 //   Y_lm = associated_legendre(l, m, mu) cos(m phi), orthonormal on the sphere
 //
-// Definitions: DEGREE_COUNT, degrees 0 .. DEGREE_COUNT - 1 (3 or 5); COEFFICIENT_COUNT = DEGREE_COUNT (DEGREE_COUNT + 1) / 2.
+// Definitions: DEGREE_COUNT, degrees 0 .. DEGREE_COUNT - 1 (1, 3 or 5); COEFFICIENT_COUNT = DEGREE_COUNT (DEGREE_COUNT + 1) / 2.
 
 const PI: f32 = 3.14159265358979;
 const DEGREE_COUNT: u32 = #{DEGREE_COUNT}u;
@@ -45,16 +45,18 @@ fn associated_legendre(l: u32, m: u32, mu: f32) -> f32 {
 
 // Y_lm(mu, phi) for all coefficients: written out, as every node of every ray needs them.
 fn harmonics(mu: f32, cos_phi: f32) -> array<f32, COEFFICIENT_COUNT> {
+    var y: array<f32, COEFFICIENT_COUNT>;
+    y[0] = 0.282094792;
+#if DEGREE_COUNT >= 3
     let s2 = max(1.0 - mu * mu, 0.0);
     let s = sqrt(s2);
     let cos_2phi = 2.0 * cos_phi * cos_phi - 1.0;
-    var y: array<f32, COEFFICIENT_COUNT>;
-    y[0] = 0.282094792;
     y[1] = 0.488602512 * mu;
     y[2] = 0.488602512 * s * cos_phi;
     y[3] = 0.315391565 * (3.0 * mu * mu - 1.0);
     y[4] = 1.092548431 * mu * s * cos_phi;
     y[5] = 0.546274215 * s2 * cos_2phi;
+#endif
 #if DEGREE_COUNT >= 5
     let mu2 = mu * mu;
     let cos_3phi = cos_phi * (2.0 * cos_2phi - 1.0);

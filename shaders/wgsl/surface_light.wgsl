@@ -3,16 +3,23 @@
 //
 // The sky and the ground around are the field of the multiple-scattering table: its spherical harmonics up to degree 2,
 // convolved with the cosine (Ramamoorthi & Hanrahan 2001, equation 8), which keeps 99 % of what any field does to a
-// Lambertian surface. The result is scaled so that a horizontal surface receives what the table says.
+// Lambertian surface. The result is scaled so that a horizontal surface receives what the table says. A table of the
+// source function keeps the field's mean and tilt alone: the sky is then taken for even around the vertical.
 //
-// Definitions: MULTIPLE_SCATTERING, AIR.
+// Definitions: MULTIPLE_SCATTERING, AIR, SOURCE_FUNCTION.
 
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
 #import welkin::sky::multiple_scattering_table
-#import welkin::spherical_harmonics::{degree_of, harmonics}
-#import welkin::tables::{optical_depth_to_top, table_sampler, IRRADIANCE_LAYER}
+#import welkin::spherical_harmonics::{degree_of, harmonics, COEFFICIENT_COUNT}
+#import welkin::tables::{mean_field, optical_depth_to_top, table_sampler}
+#ifdef SOURCE_FUNCTION
+#import welkin::source_grid::IRRADIANCE_TILE
+#import welkin::source_table::moment_uv
+#else
+#import welkin::tables::IRRADIANCE_LAYER
+#endif
 
 // Transmittance of the air between a point and a light, times the share of the light's disc above the horizon.
 fn light_transmittance(altitude_m: f32, mu_s: f32, radius_rad: f32) -> vec3<f32> {
@@ -30,17 +37,46 @@ fn light_transmittance(altitude_m: f32, mu_s: f32, radius_rad: f32) -> vec3<f32>
 }
 
 #ifdef MULTIPLE_SCATTERING
+// How a Lambertian surface weighs each degree of the harmonics.
+const TRANSFER: array<f32, 3> = array<f32, 3>(PI, 2.0943951, 0.78539816);
+
+#ifdef SOURCE_FUNCTION
+// Irradiance of a field over its mean, on a surface whose normal has the zenith cosine mu; the azimuth is not known.
+fn relative_irradiance(altitude_m: f32, mu_s: f32, mu: f32, cos_phi: f32) -> vec3<f32> {
+    var y = harmonics(mu, cos_phi);
+    let tilt = mean_field(multiple_scattering_table, altitude_m, mu_s).tilt;
+    return max(TRANSFER[0] * y[0] + TRANSFER[1] * y[1] * tilt, vec3<f32>(0.0));
+}
+
+fn horizontal_irradiance(altitude_m: f32, mu_s: f32) -> vec3<f32> {
+    let size = vec2<f32>(textureDimensions(multiple_scattering_table));
+    let uv = moment_uv(IRRADIANCE_TILE, size, altitude_m, mu_s);
+    return exp(textureSampleLevel(multiple_scattering_table, table_sampler, uv, 0, 0.0).rgb);
+}
+#else
+fn table_uv(altitude_m: f32, mu_s: f32) -> vec2<f32> {
+    let unit = mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m);
+    return mapping::inset(unit, vec2<f32>(textureDimensions(multiple_scattering_table)));
+}
+
 // Irradiance of the harmonics up to degree 2 over their mean, on a surface whose normal has the zenith cosine mu.
-fn relative_irradiance(uv: vec2<f32>, mu: f32, cos_phi: f32) -> vec3<f32> {
-    var transfer = array<f32, 3>(PI, 2.0943951, 0.78539816);
+fn relative_irradiance(altitude_m: f32, mu_s: f32, mu: f32, cos_phi: f32) -> vec3<f32> {
+    let uv = table_uv(altitude_m, mu_s);
+    var transfer = TRANSFER;
     var y = harmonics(mu, cos_phi);
     var sum = vec3<f32>(transfer[0] * y[0]);
-    for (var k = 1u; k < 6u; k++) {
+    for (var k = 1u; k < min(COEFFICIENT_COUNT, 6u); k++) {
         let coefficient = textureSampleLevel(multiple_scattering_table, table_sampler, uv, k, 0.0).rgb;
         sum += transfer[degree_of(k)] * y[k] * coefficient;
     }
     return max(sum, vec3<f32>(0.0));
 }
+
+fn horizontal_irradiance(altitude_m: f32, mu_s: f32) -> vec3<f32> {
+    let uv = table_uv(altitude_m, mu_s);
+    return exp(textureSampleLevel(multiple_scattering_table, table_sampler, uv, IRRADIANCE_LAYER, 0.0).rgb);
+}
+#endif
 #endif
 
 // Diffuse irradiance at an altitude under a light of zenith cosine mu_s, on a surface whose normal has the zenith
@@ -48,11 +84,9 @@ fn relative_irradiance(uv: vec2<f32>, mu: f32, cos_phi: f32) -> vec3<f32> {
 fn diffuse_irradiance(altitude_m: f32, mu_s: f32, mu: f32, cos_phi: f32) -> vec3<f32> {
     var irradiance = vec3<f32>(0.0);
 #ifdef MULTIPLE_SCATTERING
-    let unit = mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m);
-    let uv = mapping::inset(unit, vec2<f32>(textureDimensions(multiple_scattering_table)));
-    let level = exp(textureSampleLevel(multiple_scattering_table, table_sampler, uv, IRRADIANCE_LAYER, 0.0).rgb);
-    let tilted = relative_irradiance(uv, mu, cos_phi) / max(relative_irradiance(uv, 1.0, 0.0), vec3<f32>(1e-6));
-    irradiance = level * tilted;
+    let flat = max(relative_irradiance(altitude_m, mu_s, 1.0, 0.0), vec3<f32>(1e-6));
+    let tilted = relative_irradiance(altitude_m, mu_s, mu, cos_phi) / flat;
+    irradiance = horizontal_irradiance(altitude_m, mu_s) * tilted;
 #endif
     return irradiance;
 }

@@ -1,11 +1,16 @@
 #define_import_path welkin::tables
 // Reading the tables that belong to a medium: optical depth to the top, and multiply scattered light.
 //
-// Definitions: AIR (there is any).
+// Definitions: AIR (there is any); SOURCE_FUNCTION (multiply scattered light is tabulated as a source function, not as
+// the field's spherical harmonics).
 
 #import welkin::atmosphere::{atmosphere, CONSTITUENT_SLOTS, SCATTERER_COUNT}
 #import welkin::mapping
 #import welkin::march::LocalDirections
+#ifdef SOURCE_FUNCTION
+#import welkin::source_grid::{IRRADIANCE_TILE, MEAN_TILE, TILT_TILE}
+#import welkin::source_table::{moment_uv, tabulated_source}
+#endif
 #import welkin::spherical_harmonics::{COEFFICIENT_COUNT, DEGREE_COUNT, degree_of, harmonics}
 
 @group(0) @binding(3) var table_sampler: sampler;
@@ -22,7 +27,7 @@ fn optical_depth_to_top(altitude_m: f32, mu: f32) -> vec3<f32> {
     return textureSampleLevel(optical_depth_table, table_sampler, uv, 0.0).rgb;
 }
 
-// Tables of multiply scattered light hold, for unit irradiance of the light and at each (altitude, mu_s), the
+// Tables of multiply scattered light are of two kinds: welkin::source_table, or they hold, for unit irradiance of the light and at each (altitude, mu_s), the
 // spherical-harmonic coefficients of the radiance seen looking along a direction: layer 0 is ln I_00, layers (l, m)
 // are I_lm / I_00, and the last is ln of the diffuse irradiance on a horizontal plane. The logarithm makes
 // interpolation exact where light falls exponentially: with altitude and into the night.
@@ -35,6 +40,9 @@ fn multiply_scattered_source(
     local: LocalDirections,
     density: array<f32, CONSTITUENT_SLOTS>,
 ) -> vec3<f32> {
+#ifdef SOURCE_FUNCTION
+    return tabulated_source(table, table_sampler, altitude_m, local, density);
+#else
     let unit = mapping::multiple_scattering_to_unit(altitude_m, local.mu_s, atmosphere.top_m);
     let uv = mapping::inset(unit, vec2<f32>(textureDimensions(table)));
     var y = harmonics(local.mu, local.cos_phi);
@@ -45,6 +53,7 @@ fn multiply_scattered_source(
         relative += scattering[degree_of(k)] * y[k] * coefficient;
     }
     return max(relative, vec3<f32>(0.0)) * exp(textureSampleLevel(table, table_sampler, uv, 0, 0.0).rgb);
+#endif
 }
 
 // sum_c b_c chi_l,c at the given densities, 1/m, for each degree l.
@@ -61,9 +70,40 @@ fn scattering_by_degree(density: array<f32, CONSTITUENT_SLOTS>) -> array<vec3<f3
 
 // Diffuse irradiance on horizontal ground per unit irradiance of the light.
 fn diffuse_ground_irradiance(table: texture_2d_array<f32>, mu_s: f32) -> vec3<f32> {
+#ifdef SOURCE_FUNCTION
+    let uv = moment_uv(IRRADIANCE_TILE, vec2<f32>(textureDimensions(table)), 0.0, mu_s);
+    return exp(textureSampleLevel(table, table_sampler, uv, 0, 0.0).rgb);
+#else
     let unit = mapping::multiple_scattering_to_unit(0.0, mu_s, atmosphere.top_m);
     let uv = mapping::inset(unit, vec2<f32>(textureDimensions(table)));
     return exp(textureSampleLevel(table, table_sampler, uv, IRRADIANCE_LAYER, 0.0).rgb);
+#endif
+}
+
+// The field's mean radiance over all directions per unit irradiance of the light, and I_10 / I_00: how much more of it
+// comes from above than from below.
+struct MeanField {
+    radiance: vec3<f32>,
+    tilt: vec3<f32>,
+}
+
+fn mean_field(table: texture_2d_array<f32>, altitude_m: f32, mu_s: f32) -> MeanField {
+    let size = vec2<f32>(textureDimensions(table));
+    var field: MeanField;
+#ifdef SOURCE_FUNCTION
+    let uv = moment_uv(MEAN_TILE, size, altitude_m, mu_s);
+    let tilt_uv = moment_uv(TILT_TILE, size, altitude_m, mu_s);
+    field.radiance = exp(textureSampleLevel(table, table_sampler, uv, 0, 0.0).rgb);
+    field.tilt = textureSampleLevel(table, table_sampler, tilt_uv, 0, 0.0).rgb;
+#else
+    let uv = mapping::inset(mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m), size);
+    // Y_00: the mean of I_00 Y_00.
+    field.radiance = 0.282094792 * exp(textureSampleLevel(table, table_sampler, uv, 0, 0.0).rgb);
+#if DEGREE_COUNT >= 3
+    field.tilt = textureSampleLevel(table, table_sampler, uv, 1, 0.0).rgb;
+#endif
+#endif
+    return field;
 }
 
 // Direct irradiance on horizontal ground per unit irradiance of the light.

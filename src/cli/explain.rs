@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use welkin::plan::{Outputs, Quality, Settings};
+use welkin::plan::Outputs;
 use welkin::renderer::{Renderer, Timings};
 use welkin::scene::Scene;
 
+use super::accuracy::Accuracy;
 use super::backend::{failure, open_renderer};
 use super::pass_table::Statistics;
 use super::{Failure, stdout};
@@ -19,9 +20,8 @@ use super::{Failure, stdout};
 pub struct Arguments {
     /// The scene file
     scene: PathBuf,
-    /// How accurate: low, medium, high or ultra
-    #[arg(long, value_name = "Q", default_value_t)]
-    quality: Quality,
+    #[command(flatten)]
+    accuracy: Accuracy,
     /// The device, by a part of its name or its index
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
@@ -33,18 +33,18 @@ pub struct Arguments {
 /// Prints the plan.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = Scene::read(&arguments.scene)?;
-    let settings = Settings::of(arguments.quality);
+    let (settings, quality) = (arguments.accuracy.settings(), arguments.accuracy.quality());
     let outputs = Outputs { capture: false, picture: true };
     let statistics = match open_renderer(arguments.device.as_deref()) {
         Ok(mut renderer) => {
             let timings = renderer.render(&scene, settings, outputs).map_err(failure)?.timings;
-            Statistics::new(&scene.name, arguments.quality, Some(renderer.gpu().info()), &timings)
+            Statistics::new(&scene.name, quality, Some(renderer.gpu().info()), &timings)
         }
         // A device that was asked for by name must be there.
         Err(Failure::NoDevice(error)) if arguments.device.is_none() => {
             eprintln!("note: nothing is measured: {error:#}");
             let timings = Timings::unmeasured(Renderer::plan(&scene, settings, outputs).map_err(failure)?);
-            Statistics::new(&scene.name, arguments.quality, None, &timings)
+            Statistics::new(&scene.name, quality, None, &timings)
         }
         Err(other) => return Err(other),
     };

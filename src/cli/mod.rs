@@ -1,5 +1,6 @@
 //! The command line: one file per subcommand.
 
+mod accuracy;
 mod backend;
 mod compare;
 mod explain;

@@ -4,7 +4,7 @@ use welkin_lut::cloud::CloudKind;
 use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count};
-use crate::plan::Facts;
+use crate::plan::{Facts, Treatment};
 use crate::probe::Orders;
 
 /// Invocations of a workgroup that every Vulkan device takes.
@@ -13,6 +13,7 @@ const MAX_INVOCATIONS: u32 = 128;
 /// The definitions that every pass of a frame is compiled with.
 pub fn definitions(facts: &Facts) -> Definitions {
     let (settings, groups, directions) = (&facts.settings, &facts.groups, &facts.settings.directions);
+    let grid = &settings.source_grid;
     let numbers = [
         ("CONSTITUENT_COUNT", groups.count),
         ("SCATTERING_EXPONENTIAL_END", groups.scattering_exponential_end),
@@ -29,14 +30,22 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("LIGHT_COUNT", facts.light_slots()),
         ("FAINT_COUNT", facts.faint_discs.len() as u32),
         ("NODE_COUNT", settings.nodes_per_leg),
-        ("DEGREE_COUNT", settings.degree_count),
-        ("COEFFICIENT_COUNT", settings.coefficient_count()),
+        ("DEGREE_COUNT", facts.degree_count()),
+        ("COEFFICIENT_COUNT", facts.coefficient_count()),
         ("BELOW_COUNT", directions.below),
         ("BAND_COUNT", directions.band),
         ("ABOVE_COUNT", directions.above),
         ("AZIMUTH_COUNT", directions.azimuths),
         ("COSINE_COUNT", directions.below + directions.band + directions.above),
         ("SLICE_COUNT", settings.froxel_size[2]),
+        ("PROFILE_GROUP_COUNT", facts.profile_group_count().max(1)),
+        ("GRID_GROUND_COUNT", grid.ground),
+        ("GRID_LOW_COUNT", grid.low),
+        ("GRID_HIGH_COUNT", grid.high),
+        ("GRID_AZIMUTH_COUNT", grid.azimuths),
+        ("GRID_MU_S_COUNT", settings.source_size[0]),
+        ("GRID_ALTITUDE_COUNT", settings.source_size[1]),
+        ("GRID_INVOCATION_COUNT", grid.count().min(MAX_INVOCATIONS)),
         ("INVOCATION_COUNT", directions.count().min(MAX_INVOCATIONS)),
     ];
     let clouds = &settings.clouds;
@@ -64,6 +73,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("CLOUDS", !facts.clouds.is_empty()),
         ("CLOUD_ORDINATES", facts.cloud_scattering().ordinate_groups() > 0),
         ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),
+        ("SOURCE_FUNCTION", facts.treatment == Treatment::SourceFunction),
         ("CAPTURE", facts.outputs.capture),
         ("SURFACE", facts.surface.is_some()),
     ];

@@ -1,9 +1,8 @@
 //! Light scattered once, or reflected once by the ground, as spherical harmonics at every altitude and sun.
 
-use super::{Pass, Recording, RenderError};
+use super::{Pass, Recording, RenderError, multiple_scattering};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need};
-use crate::probe::Orders;
+use crate::plan::{Declaration, Facts, Fingerprint, Need, Treatment};
 
 const NAME: &str = "first_order";
 
@@ -23,7 +22,7 @@ pub const PASS: Pass = Pass {
 /// The table's shape: a layer for each coefficient and one for irradiance.
 pub(super) fn shape(facts: &Facts) -> ImageShape {
     let [width, height] = facts.settings.multiple_scattering_size;
-    ImageShape::D2Array(width, height, facts.settings.coefficient_count() + 1)
+    ImageShape::D2Array(width, height, facts.coefficient_count() + 1)
 }
 
 /// One workgroup per texel.
@@ -36,22 +35,12 @@ pub(super) fn work(facts: &Facts) -> Work {
 pub(super) fn inputs(facts: &Facts) -> Fingerprint {
     let settings = &facts.settings;
     let quadrature = (settings.nodes_per_leg, settings.directions);
-    let sampling = (quadrature, settings.degree_count, settings.multiple_scattering_size);
+    let sampling = (quadrature, facts.degree_count(), settings.multiple_scattering_size);
     Fingerprint::of(&(facts.scene.planet.ground_albedo, settings.orders, sampling))
 }
 
 pub(super) fn need(facts: &Facts) -> Need {
-    let not_needed = |reason: &str| Need::NotNeeded(reason.to_owned());
-    if facts.lights.is_empty() {
-        return not_needed("no directional light shines");
-    }
-    if facts.scatterers().is_empty() {
-        return not_needed("no constituent scatters");
-    }
-    if facts.orders == Orders::Single {
-        return not_needed("only single scattering is asked for");
-    }
-    Need::Needed(format!("{} constituents scatter", facts.scatterers().len()))
+    multiple_scattering::need(facts, Treatment::Harmonics)
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {

@@ -19,8 +19,12 @@ mod definitions;
 mod display;
 mod emission_order;
 mod first_order;
+mod first_source;
 mod foreground;
 mod higher_order;
+mod higher_source;
+mod isotropic_series;
+mod multiple_scattering;
 mod optical_depth;
 pub mod ordinates;
 mod probe;
@@ -51,10 +55,13 @@ pub struct Pass {
 }
 
 /// The tables that the sky is read from, in order.
-pub const TABLES: [Pass; 9] = [
+pub const TABLES: [Pass; 12] = [
     optical_depth::PASS,
     first_order::PASS,
     higher_order::PASS,
+    isotropic_series::PASS,
+    first_source::PASS,
+    higher_source::PASS,
     emission_order::PASS,
     view_optical_depth::PASS,
     sky_view::PASS,

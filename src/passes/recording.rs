@@ -6,7 +6,7 @@ use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{
     CameraBlock, ZONAL_COUNT, atmosphere_block, cloud_layers, cloud_matter, cloud_terms, cosine_nodes, emission_block,
-    gauss_nodes, height_field_block, legendre_moments, observer_block,
+    gauss_nodes, grid_nodes, height_field_block, legendre_moments, observer_block,
 };
 use super::{RenderError, Resources, definitions};
 use crate::gpu::{Commands, GpuImage, Resource, Work};
@@ -25,6 +25,7 @@ impl Parameters {
             ("emission", emission_block(facts)),
             ("gauss_nodes", bytes(&gauss_nodes(&facts.settings))),
             ("cosine_nodes", bytes(&cosine_nodes(&facts.settings))),
+            ("grid_nodes", bytes(&grid_nodes(&facts.settings))),
             ("observer", observer_block(facts)),
             ("camera", bytemuck::bytes_of(&CameraBlock::new(&facts.scene.camera)).to_vec()),
         ]))
@@ -51,7 +52,7 @@ impl<'a> Recording<'a> {
     /// Starts a frame whose dispatches are timed.
     pub fn new(label: &str, facts: &'a Facts<'a>, resources: &'a mut Resources) -> Result<Self, RenderError> {
         // Storage buffers among the parameters must be filled before recording starts.
-        resources.fill_buffer("legendre_moments", &legendre_moments(facts, facts.settings.degree_count))?;
+        resources.fill_buffer("legendre_moments", &legendre_moments(facts, facts.degree_count()))?;
         if !facts.emitters.is_empty() {
             resources.fill_buffer("zonal_moments", &legendre_moments(facts, ZONAL_COUNT))?;
         }

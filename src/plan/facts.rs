@@ -6,7 +6,7 @@ use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::disc::is_wide;
 use super::faint::{Reach, reach};
-use super::{CloudScattering, PlanError, Settings};
+use super::{CloudScattering, PlanError, Settings, Treatment};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, Light, Scene};
 
@@ -75,6 +75,12 @@ pub struct Facts<'a> {
     pub emitters: Vec<&'a Constituent>,
     /// Layers in which there are clouds.
     pub clouds: Vec<&'a CloudLayer>,
+    /// Of each scatterer: the number of its density profile among those of all scatterers.
+    pub profile_groups: Vec<u32>,
+    /// How multiply scattered light is computed.
+    pub treatment: Treatment,
+    /// Why, in words and numbers.
+    pub treatment_reason: String,
     /// Directional lights that shine.
     pub lights: Vec<&'a DirectionalLight>,
     /// Directional lights of which only the disc is seen.
@@ -107,12 +113,18 @@ impl<'a> Facts<'a> {
         }
         let camera = &scene.camera;
         let sorted = sort_lights(&shining_lights(scene)?, scene);
+        let groups = groups(&constituents);
+        let scatterers = &constituents[..groups.scatterer_count as usize];
+        let (treatment, treatment_reason) = Treatment::choose(&settings, scatterers, scene.planet.atmosphere_height_m);
         let facts = Self {
             scene,
             settings,
             orders,
             outputs,
-            groups: groups(&constituents),
+            groups,
+            profile_groups: profile_groups(scatterers),
+            treatment,
+            treatment_reason,
             constituents,
             emitters,
             clouds,
@@ -177,6 +189,21 @@ impl<'a> Facts<'a> {
         is_wide(light, &self.scene.planet, self.observer_altitude_m())
     }
 
+    /// Degrees of spherical harmonics that the field keeps: one where it counts as isotropic.
+    pub fn degree_count(&self) -> u32 {
+        if self.treatment == Treatment::IsotropicSeries { 1 } else { self.settings.degree_count }
+    }
+
+    /// Coefficients (l, m), m ≥ 0, of the field.
+    pub fn coefficient_count(&self) -> u32 {
+        self.degree_count() * (self.degree_count() + 1) / 2
+    }
+
+    /// How many density profiles scatterers have.
+    pub fn profile_group_count(&self) -> u32 {
+        self.profile_groups.iter().max().map_or(0, |last| last + 1)
+    }
+
     /// Whether light of the second and later orders, and the ground's, belongs in the picture.
     pub fn has_multiple_scattering(&self) -> bool {
         self.orders == Orders::All && self.is_lit()
@@ -236,6 +263,19 @@ fn groups(sorted: &[&Constituent]) -> ConstituentGroups {
         absorbing_tent_end: end_of((true, 1)),
         count: end_of((true, 2)),
     }
+}
+
+/// The number of each constituent's profile, counted in the order in which new ones appear.
+fn profile_groups(scatterers: &[&Constituent]) -> Vec<u32> {
+    let mut profiles: Vec<DensityProfile> = Vec::new();
+    let mut number_of = |profile: &DensityProfile| {
+        let known = profiles.iter().position(|other| other == profile);
+        known.unwrap_or_else(|| {
+            profiles.push(*profile);
+            profiles.len() - 1
+        }) as u32
+    };
+    scatterers.iter().map(|constituent| number_of(&constituent.profile)).collect()
 }
 
 fn check_supported(constituent: &Constituent) -> Result<(), PlanError> {

@@ -5,6 +5,7 @@ mod declaration;
 mod disc;
 mod facts;
 mod faint;
+mod multiple_scattering;
 mod settings;
 
 use std::collections::BTreeMap;
@@ -12,8 +13,9 @@ use std::collections::BTreeMap;
 pub use cloud_settings::{CloudScattering, CloudSettings};
 pub use declaration::{Declaration, Fingerprint, Need};
 pub use facts::{ConstituentGroups, Facts, Outputs, Surface, Viewpoint};
+pub use multiple_scattering::{MultipleScattering, Treatment, expected_ringing};
 use serde::Serialize;
-pub use settings::{Directions, Quality, Settings};
+pub use settings::{Directions, Quality, Settings, SourceGrid};
 
 /// Why a scene cannot be planned.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

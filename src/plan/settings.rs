@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::CloudSettings;
+use super::{CloudSettings, MultipleScattering};
 
 /// How much accuracy a picture is worth. The error of each is measured in docs/accuracy.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -73,8 +73,33 @@ impl Directions {
     }
 }
 
-/// Everything that trades accuracy for time. Sizes are (columns, rows) in texels.
+/// Directions in which the source function is tabulated: cosines in each part of the sphere, and azimuths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct SourceGrid {
+    /// Below the horizon.
+    pub ground: u32,
+    /// From the horizon to the light.
+    pub low: u32,
+    /// From the light to the zenith.
+    pub high: u32,
+    /// On half a turn.
+    pub azimuths: u32,
+}
+
+impl SourceGrid {
+    /// All cosines.
+    pub fn cosines(&self) -> u32 {
+        self.ground + self.low + self.high
+    }
+
+    /// All directions.
+    pub fn count(&self) -> u32 {
+        self.cosines() * self.azimuths
+    }
+}
+
+/// Everything that trades accuracy for time. Sizes are (columns, rows) in texels.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Gauss-Legendre nodes on each leg of a ray.
     pub nodes_per_leg: u32,
@@ -88,6 +113,18 @@ pub struct Settings {
     pub directions: Directions,
     /// Orders of scattering that are computed one by one, at least 3; the rest of the series is geometric.
     pub orders: u32,
+    /// How light of the second and later orders is computed.
+    pub multiple_scattering: MultipleScattering,
+    /// How much the sky may ring, relative to its own light, before the source function takes the place of spherical
+    /// harmonics: see [`super::expected_ringing`]. A quarter of what the quality promises at the 99th percentile, as the
+    /// error there is about three times the expectation.
+    pub ringing_limit: f64,
+    /// Directions of the source function.
+    pub source_grid: SourceGrid,
+    /// Source function: (sun, altitude).
+    pub source_size: [u32; 2],
+    /// Orders of scattering of the source function that are computed one by one, at least 3.
+    pub source_orders: u32,
     /// Sky view, each half: (azimuth, elevation).
     pub sky_view_size: [u32; 2],
     /// Froxels, each half of the view sphere: (azimuth, elevation, distance).
@@ -107,6 +144,11 @@ impl Settings {
                 degree_count: 3,
                 directions: Directions { below: 3, band: 2, above: 4, azimuths: 4 },
                 orders: 3,
+                multiple_scattering: MultipleScattering::Auto,
+                ringing_limit: 0.015,
+                source_grid: SourceGrid { ground: 4, low: 4, high: 4, azimuths: 8 },
+                source_size: [32, 16],
+                source_orders: 4,
                 sky_view_size: [32, 48],
                 froxel_size: [8, 16, 16],
                 clouds: CloudSettings::of(quality),
@@ -118,6 +160,11 @@ impl Settings {
                 degree_count: 3,
                 directions: Directions { below: 4, band: 3, above: 5, azimuths: 6 },
                 orders: 3,
+                multiple_scattering: MultipleScattering::Auto,
+                ringing_limit: 0.015,
+                source_grid: SourceGrid { ground: 4, low: 5, high: 5, azimuths: 8 },
+                source_size: [40, 20],
+                source_orders: 4,
                 sky_view_size: [48, 96],
                 froxel_size: [12, 24, 24],
                 clouds: CloudSettings::of(quality),
@@ -129,6 +176,11 @@ impl Settings {
                 degree_count: 3,
                 directions: Directions { below: 4, band: 3, above: 5, azimuths: 8 },
                 orders: 3,
+                multiple_scattering: MultipleScattering::Auto,
+                ringing_limit: 0.0075,
+                source_grid: SourceGrid { ground: 5, low: 6, high: 5, azimuths: 10 },
+                source_size: [48, 24],
+                source_orders: 5,
                 sky_view_size: [80, 144],
                 froxel_size: [16, 48, 32],
                 clouds: CloudSettings::of(quality),
@@ -140,16 +192,16 @@ impl Settings {
                 degree_count: 5,
                 directions: Directions { below: 5, band: 3, above: 6, azimuths: 8 },
                 orders: 4,
+                multiple_scattering: MultipleScattering::Auto,
+                ringing_limit: 0.00375,
+                source_grid: SourceGrid { ground: 6, low: 8, high: 6, azimuths: 12 },
+                source_size: [64, 32],
+                source_orders: 6,
                 sky_view_size: [96, 192],
                 froxel_size: [24, 64, 48],
                 clouds: CloudSettings::of(quality),
             },
         }
-    }
-
-    /// Coefficients (l, m), m ≥ 0, of the field.
-    pub fn coefficient_count(&self) -> u32 {
-        self.degree_count * (self.degree_count + 1) / 2
     }
 }
 
@@ -163,7 +215,14 @@ mod tests {
             let settings = Settings::of(quality);
             // maxComputeWorkGroupInvocations is at least 128, and each coefficient needs an invocation.
             assert!(settings.directions.count() <= 128, "{quality}");
-            assert!(settings.coefficient_count() <= settings.directions.count(), "{quality}");
+            let coefficients = settings.degree_count * (settings.degree_count + 1) / 2;
+            assert!(coefficients <= settings.directions.count(), "{quality}");
+            let grid = settings.source_grid;
+            let [width, height] = settings.source_size;
+            // Beside an image's side of 4096, 16 KiB of workgroup memory: 32 bytes for each direction.
+            assert!(width * grid.azimuths <= 4096 && height * (grid.cosines() + 1) <= 4096, "{quality}");
+            assert!(32 * grid.count() <= 16384, "{quality}");
+            assert!(settings.source_orders >= 3, "{quality}");
             assert!(settings.orders >= 3, "{quality}: the ratio of orders is constant only after the third");
         }
     }

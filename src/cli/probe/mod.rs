@@ -7,12 +7,12 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use welkin::output::AtomicFile;
-use welkin::plan::{Quality, Settings};
 use welkin::probe::{Orders, Ray, RayRadiance};
 use welkin::reference::{self, Effort, Solver};
 use welkin::scene::Scene;
 
 use super::Failure;
+use super::accuracy::Accuracy;
 use super::backend::{Backend, failure, open_renderer};
 use super::solver::{SolverArguments, check_sampling};
 use table::RayTable;
@@ -39,9 +39,8 @@ pub struct Arguments {
     /// What computes light
     #[arg(long, value_enum, default_value = "gpu")]
     backend: Backend,
-    /// How accurate the gpu backend is: low, medium (default), high or ultra
-    #[arg(long, value_name = "Q")]
-    quality: Option<Quality>,
+    #[command(flatten)]
+    accuracy: Accuracy,
     /// The gpu backend's device, by a part of its name or its index
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
@@ -66,7 +65,8 @@ enum OrdersArgument {
 /// Reads the rays, traces them and writes the result.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut options = vec![
-        ("--quality", Backend::Gpu, arguments.quality.is_some()),
+        ("--quality", Backend::Gpu, arguments.accuracy.quality.is_some()),
+        ("--multiple-scattering", Backend::Gpu, arguments.accuracy.multiple_scattering.is_some()),
         ("--device", Backend::Gpu, arguments.device.is_some()),
         ("--samples", Backend::Reference, arguments.samples.is_some()),
     ];
@@ -88,7 +88,7 @@ fn trace(arguments: &Arguments, solver: Solver, scene: &Scene, rays: &[Ray]) -> 
     };
     match arguments.backend {
         Backend::Gpu => {
-            let settings = Settings::of(arguments.quality.unwrap_or_default());
+            let settings = arguments.accuracy.settings();
             let mut renderer = open_renderer(arguments.device.as_deref())?;
             renderer.probe(scene, settings, rays, orders).map_err(failure)
         }

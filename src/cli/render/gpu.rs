@@ -4,7 +4,7 @@ use std::path::Path;
 
 use welkin::foreground::{Depth, Foreground};
 use welkin::output::{DEPTH_CHANNELS, read_exr, read_exr_channel};
-use welkin::plan::{Outputs, Settings};
+use welkin::plan::Outputs;
 use welkin::scene::{Camera, Scene};
 
 use super::{Arguments, Rendered};
@@ -14,15 +14,15 @@ use crate::cli::pass_table::Statistics;
 
 pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<Rendered, Failure> {
     let foreground = read_foreground(arguments, &scene.camera)?;
-    let quality = arguments.quality.unwrap_or_default();
+    let accuracy = &arguments.accuracy;
     let mut renderer = open_renderer(arguments.device.as_deref())?;
-    let settings = Settings::of(quality);
+    let settings = accuracy.settings();
     let rendered = match &foreground {
         Some(foreground) => renderer.render_over(scene, settings, outputs, foreground),
         None => renderer.render(scene, settings, outputs),
     };
     let rendered = rendered.map_err(failure)?;
-    let statistics = Statistics::new(&scene.name, quality, Some(renderer.gpu().info()), &rendered.timings);
+    let statistics = Statistics::new(&scene.name, accuracy.quality(), Some(renderer.gpu().info()), &rendered.timings);
     Ok(Rendered {
         frame: rendered.frame,
         picture: rendered.picture.unwrap_or_default(),

@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use welkin::frame::Frame;
 use welkin::output::{AtomicFile, write_exr, write_png};
-use welkin::plan::{Outputs, Quality};
+use welkin::plan::Outputs;
 use welkin::scene::Scene;
 
+use super::accuracy::Accuracy;
 use super::backend::Backend;
 use super::{Failure, stdout};
 
@@ -27,9 +28,8 @@ pub struct Arguments {
     /// What computes light
     #[arg(long, value_enum, default_value = "gpu")]
     backend: Backend,
-    /// How accurate the gpu backend is: low, medium (default), high or ultra
-    #[arg(long, value_name = "Q")]
-    quality: Option<Quality>,
+    #[command(flatten)]
+    accuracy: Accuracy,
     /// The gpu backend's device, by a part of its name or its index
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
@@ -71,7 +71,8 @@ enum Format {
 /// Renders, and writes what was asked for.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.backend.check_options(&[
-        ("--quality", Backend::Gpu, arguments.quality.is_some()),
+        ("--quality", Backend::Gpu, arguments.accuracy.quality.is_some()),
+        ("--multiple-scattering", Backend::Gpu, arguments.accuracy.multiple_scattering.is_some()),
         ("--device", Backend::Gpu, arguments.device.is_some()),
         ("--depth", Backend::Gpu, arguments.depth.is_some()),
         ("--samples", Backend::Reference, arguments.samples.is_some()),

@@ -33,6 +33,8 @@ pub(super) struct ConstituentBlock {
     pub(super) extinction_per_m: [f32; 3],
     pub(super) profile_b: f32,
     pub(super) lobes: [PhaseLobeBlock; MAX_LOBES],
+    pub(super) profile_group: u32,
+    pub(super) padding: [u32; 3],
 }
 
 /// WGSL `Atmosphere` up to its array of constituents.
@@ -125,7 +127,7 @@ pub(super) fn profile(profile: &DensityProfile) -> (f32, f32) {
 }
 
 impl ConstituentBlock {
-    fn new(constituent: &Constituent) -> Self {
+    fn new(constituent: &Constituent, profile_group: u32) -> Self {
         let (profile_a, profile_b) = profile(&constituent.profile);
         let mut padded = [PhaseLobeBlock::ABSENT; MAX_LOBES];
         for (slot, lobe) in padded.iter_mut().zip(lobes(&constituent.phase)) {
@@ -137,6 +139,8 @@ impl ConstituentBlock {
             extinction_per_m: vec3(constituent.extinction_per_m()),
             profile_b,
             lobes: padded,
+            profile_group,
+            padding: [0; 3],
         }
     }
 }
@@ -150,7 +154,9 @@ pub fn atmosphere_block(facts: &Facts) -> Vec<u8> {
         top_m: planet.atmosphere_height_m as f32,
         padding: [0.0; 3],
     };
-    let mut constituents: Vec<_> = facts.constituents.iter().map(|c| ConstituentBlock::new(c)).collect();
+    let group = |index: usize| facts.profile_groups.get(index).copied().unwrap_or(0);
+    let numbered = facts.constituents.iter().enumerate();
+    let mut constituents: Vec<_> = numbered.map(|(i, c)| ConstituentBlock::new(c, group(i))).collect();
     constituents.resize(constituents.len().max(1), ConstituentBlock::zeroed());
     [bytemuck::bytes_of(&header), bytemuck::cast_slice(&constituents)].concat()
 }

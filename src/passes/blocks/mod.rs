@@ -13,7 +13,7 @@ pub use camera::CameraBlock;
 pub use clouds::{cloud_layers, cloud_matter, cloud_term_count, cloud_terms};
 pub use emission::{ZONAL_COUNT, emission_block, emission_breakpoints_m};
 pub use observer::observer_block;
-pub use quadrature::{GaussNodeBlock, cosine_nodes, gauss_nodes};
+pub use quadrature::{GaussNodeBlock, cosine_nodes, gauss_nodes, grid_nodes};
 pub use terrain::height_field_block;
 
 use welkin_lut::Bands;
@@ -84,7 +84,7 @@ mod tests {
             compose,
             "Constituent",
             ConstituentBlock,
-            [scattering_per_m, profile_a, extinction_per_m, profile_b, lobes]
+            [scattering_per_m, profile_a, extinction_per_m, profile_b, lobes, profile_group]
         );
         assert_eq!(size(&compose, "Constituent"), size_of::<ConstituentBlock>());
         let emission = shader("view_emission");

@@ -1,0 +1,49 @@
+// Pass: the source function of light scattered once, or reflected once by the ground, at every altitude and sun.
+//
+// One workgroup per (altitude, mu_s), one invocation per direction; for unit irradiance of the light.
+
+#import welkin::atmosphere::{atmosphere, PROFILE_GROUP_COUNT}
+#import welkin::convolution::{field, irradiance, keep_direction, mean_of_field, source_function}
+#import welkin::field_radiance::{first_order_radiance, ray_from}
+#import welkin::geometry::horizon_mu
+#import welkin::mapping
+#import welkin::source_grid::{
+    direction_of, moment_texel, texel_of, DIRECTION_COUNT, IRRADIANCE_TILE, MEAN_TILE, TILE_SIZE, TILT_TILE
+}
+
+const INVOCATION_COUNT: u32 = #{GRID_INVOCATION_COUNT}u;
+
+@group(0) @binding(6) var first_source: texture_storage_2d_array<rgba32float, write>;
+
+// Below this, light is dark; it keeps logarithms finite.
+const DARK: f32 = 1e-30;
+
+fn store(texel: vec2<u32>, layer: u32, value: vec3<f32>) {
+    textureStore(first_source, texel, layer, vec4<f32>(log(max(value, vec3<f32>(DARK))), 0.0));
+}
+
+@compute @workgroup_size(#{GRID_INVOCATION_COUNT})
+fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
+    let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(TILE_SIZE));
+    let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m);
+    let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
+    for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
+        keep_direction(i, mu_h, here.mu);
+        let direction = direction_of(i, mu_h, here.mu);
+        let ray = ray_from(here.altitude_m, here.mu, direction.mu, cos(direction.phi_rad), direction.hits_ground);
+        field[i] = first_order_radiance(ray, direction.hits_ground);
+    }
+    workgroupBarrier();
+    for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
+        var source = source_function(i);
+        for (var g = 0u; g < PROFILE_GROUP_COUNT; g++) {
+            store(texel_of(i, texel.xy), g, source[g]);
+        }
+    }
+    if invocation == 0u {
+        let mean = mean_of_field();
+        store(moment_texel(IRRADIANCE_TILE, texel.xy), 0u, irradiance());
+        store(moment_texel(MEAN_TILE, texel.xy), 0u, mean.radiance);
+        textureStore(first_source, moment_texel(TILT_TILE, texel.xy), 0u, vec4<f32>(mean.tilt, 0.0));
+    }
+}

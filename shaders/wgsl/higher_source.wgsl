@@ -1,0 +1,80 @@
+// Pass: the source function of one order more, from that of the order before; source iteration.
+//
+// Adds what it finds to the sum of all orders. The last pass (definition CLOSE_SERIES) adds the rest of the series:
+// from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric.
+
+#import welkin::atmosphere::{atmosphere, PROFILE_GROUP_COUNT}
+#import welkin::convolution::{field, irradiance, keep_direction, mean_of_field, source_function}
+#import welkin::field_radiance::{next_order_radiance, ray_from}
+#import welkin::geometry::horizon_mu
+#import welkin::mapping
+#import welkin::source_grid::{
+    direction_of, moment_texel, texel_of, DIRECTION_COUNT, IRRADIANCE_TILE, MEAN_TILE, TILE_SIZE, TILT_TILE
+}
+
+const INVOCATION_COUNT: u32 = #{GRID_INVOCATION_COUNT}u;
+
+@group(0) @binding(6) var previous_order: texture_2d_array<f32>;
+@group(0) @binding(7) var previous_sum: texture_2d_array<f32>;
+#ifndef CLOSE_SERIES
+@group(0) @binding(8) var order: texture_storage_2d_array<rgba32float, write>;
+#endif
+@group(0) @binding(9) var sum: texture_storage_2d_array<rgba32float, write>;
+
+// Below this, light is dark; it keeps logarithms finite.
+const DARK: f32 = 1e-30;
+// The largest ratio between orders that the tail believes.
+const MAX_RATIO: f32 = 0.9;
+
+// The whole series from this order on, relative to this order. The ratio of orders is that of means over directions:
+// in single directions it is not yet constant where haze scatters forward and light comes round slowly.
+fn remainder(place: vec2<u32>) -> vec3<f32> {
+#ifdef CLOSE_SERIES
+    let before = exp(textureLoad(previous_order, moment_texel(MEAN_TILE, place), 0, 0).rgb);
+    let ratio = mean_of_field().radiance / max(before, vec3<f32>(DARK));
+    return 1.0 / (1.0 - clamp(ratio, vec3<f32>(0.0), vec3<f32>(MAX_RATIO)));
+#else
+    return vec3<f32>(1.0);
+#endif
+}
+
+// Adds a positive quantity of this order, kept as its logarithm.
+fn add(texel: vec2<u32>, layer: u32, value_or_dark: vec3<f32>, rest: vec3<f32>) {
+    let value = max(value_or_dark, vec3<f32>(DARK));
+#ifndef CLOSE_SERIES
+    textureStore(order, texel, layer, vec4<f32>(log(value), 0.0));
+#endif
+    let total = exp(textureLoad(previous_sum, texel, layer, 0).rgb) + value * rest;
+    textureStore(sum, texel, layer, vec4<f32>(log(total), 0.0));
+}
+
+@compute @workgroup_size(#{GRID_INVOCATION_COUNT})
+fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
+    let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(TILE_SIZE));
+    let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m);
+    let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
+    for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
+        keep_direction(i, mu_h, here.mu);
+        let direction = direction_of(i, mu_h, here.mu);
+        let ray = ray_from(here.altitude_m, here.mu, direction.mu, cos(direction.phi_rad), direction.hits_ground);
+        field[i] = next_order_radiance(previous_order, ray, direction.hits_ground);
+    }
+    workgroupBarrier();
+    let rest = remainder(texel.xy);
+    for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
+        var source = source_function(i);
+        for (var g = 0u; g < PROFILE_GROUP_COUNT; g++) {
+            add(texel_of(i, texel.xy), g, source[g], rest);
+        }
+    }
+    if invocation == 0u {
+        let mean = mean_of_field();
+        add(moment_texel(IRRADIANCE_TILE, texel.xy), 0u, irradiance(), rest);
+        add(moment_texel(MEAN_TILE, texel.xy), 0u, mean.radiance, rest);
+        let before = exp(textureLoad(previous_sum, moment_texel(MEAN_TILE, texel.xy), 0, 0).rgb);
+        let tilt_before = textureLoad(previous_sum, moment_texel(TILT_TILE, texel.xy), 0, 0).rgb;
+        let added = max(mean.radiance, vec3<f32>(DARK)) * rest;
+        let tilt = (before * tilt_before + added * mean.tilt) / (before + added);
+        textureStore(sum, moment_texel(TILT_TILE, texel.xy), 0u, vec4<f32>(tilt, 0.0));
+    }
+}

@@ -1,0 +1,38 @@
+//! The source function of the second and all later orders, one order after the other, and the sum of all.
+
+use super::first_source::{inputs, need, shape, work};
+use super::{Pass, Recording, RenderError};
+use crate::gpu::ImageFormat;
+use crate::plan::Declaration;
+
+const NAME: &str = "higher_source";
+
+/// The pass.
+pub const PASS: Pass = Pass {
+    declaration: Declaration {
+        name: NAME,
+        need,
+        reads: &["first_source", "optical_depth_table"],
+        writes: &["multiple_scattering_table"],
+        inputs,
+        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+    },
+    record,
+};
+
+fn record(recording: &mut Recording) -> Result<(), RenderError> {
+    let shape = shape(recording.facts);
+    let format = ImageFormat::Rgba32Float;
+    let mut order = recording.resources.image("first_source", shape, format)?;
+    let mut sum = order.clone();
+    for n in 2..recording.facts.settings.source_orders {
+        let next = recording.resources.gpu.image(&format!("source_{n}"), shape, format)?;
+        let next_sum = recording.resources.gpu.image(&format!("source_sum_{n}"), shape, format)?;
+        let images = [("previous_order", &order), ("previous_sum", &sum), ("order", &next), ("sum", &next_sum)];
+        recording.dispatch(NAME, &[], &images, work(recording.facts))?;
+        (order, sum) = (next, next_sum);
+    }
+    let table = recording.resources.image("multiple_scattering_table", shape, format)?;
+    let images = [("previous_order", &order), ("previous_sum", &sum), ("sum", &table)];
+    recording.dispatch(NAME, &["CLOSE_SERIES"], &images, work(recording.facts))
+}
