@@ -1,5 +1,7 @@
 //! Runs a plan on a device: no physics, no Vulkan.
 
+mod spectral;
+
 use std::collections::BTreeMap;
 
 use crate::foreground::Foreground;
@@ -8,13 +10,16 @@ use crate::gpu::{Clock, DeviceRequest, Gpu};
 use crate::passes::{self, CLOUDS, FRAME, Pass, Recording, RenderError, Resources, TABLES, record_probe};
 use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Settings, Surface};
 use crate::probe::{Orders, Ray, RayRadiance};
-use crate::scene::{Light, Scene};
+use crate::scene::{Camera, Light, Scene};
 
 /// Renders scenes on one device; what one frame has computed, the next reuses.
 pub struct Renderer {
     resources: Resources,
     history: History,
     foregrounds: u64,
+    /// Of other groups of wavelengths than the one at the front.
+    histories: Vec<History>,
+    group: usize,
 }
 
 /// A frame with what it took.
@@ -51,6 +56,9 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Plan`] when the scene asks for more than the renderer can do.
     pub fn plan(scene: &Scene, settings: Settings, outputs: Outputs) -> Result<Plan, RenderError> {
+        if scene.spectrum.group_count() > 1 {
+            return Self::plan_groups(scene, settings, outputs);
+        }
         let facts = Facts::new(scene, settings, Orders::All, outputs)?;
         let declarations: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).map(|pass| pass.declaration).collect();
         Ok(Plan::new(&facts, &History::default(), &declarations))
@@ -61,7 +69,13 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Gpu`] when there is none that can be used; [`RenderError::NoLinearFilter`].
     pub fn new(request: &DeviceRequest) -> Result<Self, RenderError> {
-        Ok(Self { resources: Resources::new(Gpu::new(request)?)?, history: History::default(), foregrounds: 0 })
+        Ok(Self {
+            resources: Resources::new(Gpu::new(request)?)?,
+            history: History::default(),
+            histories: Vec::new(),
+            group: 0,
+            foregrounds: 0,
+        })
     }
 
     /// The device.
@@ -74,6 +88,9 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Plan`] when the scene asks for more than the renderer can do; device and shader errors.
     pub fn render(&mut self, scene: &Scene, settings: Settings, outputs: Outputs) -> Result<Rendered, RenderError> {
+        if scene.spectrum.group_count() > 1 {
+            return self.render_groups(scene, settings, outputs);
+        }
         self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?)
     }
 
@@ -89,6 +106,10 @@ impl Renderer {
         outputs: Outputs,
         foreground: &Foreground,
     ) -> Result<Rendered, RenderError> {
+        if scene.spectrum.group_count() > 1 {
+            let what = "the host's surfaces have three bands and the scene more wavelengths".to_owned();
+            return Err(PlanError::Unsupported { what }.into());
+        }
         passes::upload_foreground(&mut self.resources, &scene.camera, foreground)?;
         self.foregrounds += 1;
         let surface = Some(Surface::Given(self.foregrounds));
@@ -98,8 +119,9 @@ impl Renderer {
     fn render_frame(&mut self, facts: &Facts) -> Result<Rendered, RenderError> {
         let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
         let timings = self.execute("frame", facts, &passes, 0)?;
-        let (frame, picture) = self.read_back(facts)?;
-        Ok(Rendered { frame, picture, timings })
+        let images = ["radiance_image", "transmittance_image"];
+        let (frame, picture) = self.read_images(&facts.scene.camera, facts.outputs, images)?;
+        Ok(Rendered { frame: spectral::in_channels(frame, facts.scene), picture, timings })
     }
 
     /// Radiance along rays, each from its own altitude under its own sun: the scene's first directional light, moved
@@ -166,22 +188,27 @@ impl Renderer {
         left.filter(|name| !written.contains(name)).for_each(|name| self.resources.release(name));
     }
 
-    fn read_back(&self, facts: &Facts) -> Result<(Frame, Option<Vec<u8>>), RenderError> {
-        let camera = &facts.scene.camera;
+    /// Reads radiance and transmittance from the images of those names, distance and the picture.
+    fn read_images(
+        &self,
+        camera: &Camera,
+        outputs: Outputs,
+        [radiance, transmittance]: [&str; 2],
+    ) -> Result<(Frame, Option<Vec<u8>>), RenderError> {
         let mut frame = Frame::new(camera.width, camera.height);
         let image = |name| self.resources.existing_image(name);
         let rgb = |texels: Vec<[f32; 4]>| texels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect::<Vec<_>>();
-        if let Some(radiance) = image("radiance_image") {
+        if let Some(radiance) = image(radiance) {
             frame.radiance = rgb(self.gpu().read_image(radiance)?);
         }
-        if facts.outputs.capture
-            && let (Some(transmittance), Some(distance)) = (image("transmittance_image"), image("distance_image"))
+        if outputs.capture
+            && let (Some(transmittance), Some(distance)) = (image(transmittance), image("distance_image"))
         {
             frame.transmittance = rgb(self.gpu().read_image(transmittance)?);
             frame.distance_m = self.gpu().read_image(distance)?;
         }
         let mut picture = None;
-        if facts.outputs.picture
+        if outputs.picture
             && let Some(image) = image("picture_image")
         {
             let texels: Vec<[u8; 4]> = self.gpu().read_image(image)?;

@@ -257,8 +257,8 @@ fn steps_between_png_and_exr(scene: &str, factor: f64) -> u8 {
     let scene = Scene::read(&folder.path().join("scene.toml")).unwrap();
     let frame = read_exr(&folder.path().join("a.exr")).unwrap();
     assert!(frame.radiance.as_flattened().iter().any(|&value| value > 0.0), "the picture is black");
-    let exposure = display::exposure(&scene).map(|band| band * factor);
-    let host = display::picture(&frame, exposure, scene.display.tone_map);
+    let exposed = factor * display::exposed_srgb(&scene);
+    let host = display::picture(&frame, exposed, scene.display.tone_map);
     let device = image::open(folder.path().join("a.png")).unwrap().into_rgb8().into_raw();
     let json: serde_json::Value = serde_json::from_slice(&fs::read(folder.path().join("a.json")).unwrap()).unwrap();
     let ran = |pass: &&serde_json::Value| pass["decision"] == "run";

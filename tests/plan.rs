@@ -21,9 +21,10 @@ fn plan(scene: &Scene) -> Plan {
     Renderer::plan(scene, Settings::of(Quality::Low), PICTURE).unwrap()
 }
 
-/// The passes of air that gives off light of its own, and of what stands before the camera.
-const OF_OTHER_SCENES: [&str; 5] =
-    ["emission_order", "view_emission", "aerial_optical_depth", "aerial_perspective", "terrain"];
+/// The passes of air that gives off light of its own, of what stands before the camera, and of more wavelengths
+/// than three.
+const OF_OTHER_SCENES: [&str; 6] =
+    ["emission_order", "view_emission", "aerial_optical_depth", "aerial_perspective", "terrain", "colour"];
 
 /// The passes of other treatments of multiply scattered light than that of the hazy noon; tests/treatment.rs has the rule.
 const OTHER_TREATMENTS: [&str; 3] = ["first_order", "higher_order", "isotropic_series"];

@@ -1,8 +1,8 @@
 //! Atmospheric media and the lookup tables made from them.
 //!
 //! This crate holds the *problem*: what a medium is ([`Medium`]), how it scatters ([`PhaseFunction`]), the planet
-//! it lies on ([`Planet`]), geometry that stays exact near the ground ([`geometry`]) and the mappings between table
-//! texels and physical parameters ([`mapping`]). It knows nothing of Vulkan, windows or command lines, so that an
+//! it lies on ([`Planet`]), geometry that stays exact near the ground ([`geometry`]), spectra and colour ([`spectrum`]) and the
+//! mappings between table texels and physical parameters ([`mapping`]). It knows nothing of Vulkan, windows or command lines, so that an
 //! engine can depend on it alone.
 //!
 //! Units are SI throughout: metres, 1/m, radians, W·m⁻²·sr⁻¹·nm⁻¹. Everything is `f64`.
@@ -18,6 +18,7 @@ pub mod phase;
 mod planet;
 mod profile;
 pub mod quadrature;
+pub mod spectrum;
 
 pub use bands::{BAND_COUNT, BAND_NAMES, BAND_WAVELENGTHS_NM, Bands};
 pub use medium::{Constituent, Medium, MediumError};

@@ -6,9 +6,8 @@
 @group(0) @binding(1) var picture_image: texture_storage_2d<rgba8unorm, write>;
 
 struct Display {
-    // What radiance is multiplied by, band by band: exposure and white balance.
-    exposure: vec3<f32>,
-    padding: f32,
+    // From the image's channels to exposed linear sRGB.
+    to_srgb: mat3x3<f32>,
 }
 
 @group(0) @binding(2) var<uniform> display: Display;
@@ -18,10 +17,24 @@ const CONTRAST: f32 = 1.3;
 const MIDDLE_GREY: f32 = 0.49022517;
 const WHITEST: f32 = 1e9;
 
+// IEC 61966-2-1.
+const LUMINANCE: vec3<f32> = vec3<f32>(0.2126, 0.7152, 0.0722);
+
+// A colour that sRGB cannot mix moves towards grey of the same luminance until it can.
+fn into_gamut(linear: vec3<f32>) -> vec3<f32> {
+    let least = min(linear.r, min(linear.g, linear.b));
+    if least >= 0.0 {
+        return linear;
+    }
+    let luminance = max(dot(linear, LUMINANCE), 0.0);
+    let kept = luminance / max(luminance - least, 1e-30);
+    return max(mix(vec3<f32>(luminance), linear, kept), vec3<f32>(0.0));
+}
+
 // From [0, inf[ to [0, 1].
 fn tone_map(exposed: vec3<f32>) -> vec3<f32> {
 #ifdef FILMIC
-    // The strongest band follows the curve, the others keep their ratio to it, and all move to white with it.
+    // The strongest primary follows the curve, the others keep their ratio to it, and all move to white with it.
     let strongest = max(exposed.r, max(exposed.g, exposed.b));
     if strongest <= 0.0 {
         return vec3<f32>(0.0);
@@ -62,7 +75,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= textureDimensions(picture_image)) {
         return;
     }
-    let radiance = textureLoad(radiance_image, id.xy, 0).rgb;
-    let encoded = srgb_encoded(tone_map(max(radiance, vec3<f32>(0.0)) * display.exposure));
+    let exposed = display.to_srgb * textureLoad(radiance_image, id.xy, 0).rgb;
+    let encoded = srgb_encoded(tone_map(into_gamut(exposed)));
     textureStore(picture_image, id.xy, vec4<f32>(encoded + dither(id.xy), 1.0));
 }

@@ -31,7 +31,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (a, b) = (read_exr(&arguments.a)?, read_exr(&arguments.b)?);
     let comparison = compare(&a, &b).map_err(|error| match error {
-        MetricsError::Size { .. } => Failure::from(error),
+        MetricsError::Size { .. } | MetricsError::Channels { .. } => Failure::from(error),
         MetricsError::Radiance { .. } | MetricsError::BlackReference => Failure::Check(error.to_string()),
     })?;
     stdout::print(&if arguments.json { serde_json::to_string_pretty(&comparison)? } else { table(&comparison) })?;

@@ -16,6 +16,7 @@ mod render;
 mod schema;
 mod slab;
 mod solver;
+mod spectrum;
 mod stdout;
 mod watch;
 

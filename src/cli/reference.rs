@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::limit::relative_error;
 use super::solver::{SolverArguments, check_sampling};
+use super::spectrum::SpectrumArguments;
 use super::watch::{Checkpoint, Watch};
 use super::{Failure, exr_output};
 use welkin::output::{AtomicFile, ExrHeader};
@@ -21,6 +22,8 @@ use welkin::scene::Scene;
 pub struct Arguments {
     /// Scene file
     scene: PathBuf,
+    #[command(flatten)]
+    spectrum: SpectrumArguments,
     /// Picture to write, an EXR file
     #[arg(short, long, value_name = "FILE", value_parser = exr_output)]
     output: PathBuf,
@@ -48,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let solver = arguments.solver.solver()?;
     let random = [("--samples", arguments.samples.is_some()), ("--max-error", arguments.max_error.is_some())];
     check_sampling(&solver, &random)?;
-    let scene = Scene::read(&arguments.scene)?;
+    let scene = Scene::read_with(&arguments.scene, arguments.spectrum.request())?;
     let sampling = match solver {
         Solver::Single => Sampling::without_noise(),
         _ => Sampling::new(arguments.samples, arguments.max_error),

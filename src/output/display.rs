@@ -1,20 +1,54 @@
 //! From linear radiance to a picture on a screen; `display.wgsl` is the same in f32.
 
-use welkin_lut::{BAND_COUNT, Bands};
+use glam::{DMat3, DVec3};
+use welkin_lut::Bands;
+use welkin_lut::spectrum::{Channels, ColourSpace, adaptation, cie, solar, three_bands};
 
 use crate::frame::Frame;
-use crate::scene::{Light, Scene, ToneMap};
+use crate::scene::{Scene, ToneMap};
 
-/// What radiance is multiplied by before the tone map: 2^EV, and a white balance in which the first directional light
-/// is white above the air, as a camera set to daylight sees it.
-pub fn exposure(scene: &Scene) -> Bands {
-    let white = scene.lights.iter().find_map(|light| match light {
-        Light::Directional(light) if light.irradiance.iter().all(|&e| e > 0.0) => Some(light.irradiance),
-        _ => None,
-    });
-    let white = white.unwrap_or([1.0; BAND_COUNT]);
-    let mean = white.iter().sum::<f64>() / BAND_COUNT as f64;
-    white.map(|irradiance| scene.display.exposure_ev.exp2() * mean / irradiance)
+/// What makes exposed linear sRGB of the channels that a backend renders of a scene: the colours that its wavelengths stand
+/// for, balanced to its white, times 2^EV.
+pub fn exposed_srgb(scene: &Scene) -> DMat3 {
+    match scene.spectrum.channels {
+        Channels::Bands => exposed_bands(scene),
+        Channels::Colour(space) => scene.display.exposure_ev.exp2() * space.to_space(ColourSpace::LinearSrgb),
+    }
+}
+
+/// The same of the bands themselves, whatever channels the scene asks for.
+pub fn exposed_bands(scene: &Scene) -> DMat3 {
+    scene.display.exposure_ev.exp2() * scene.colour_in(ColourSpace::LinearSrgb)[0].radiance
+}
+
+/// Linear sRGB of channels whose scene is not known: bands are balanced to sunlight.
+pub fn linear_srgb(channels: Channels) -> DMat3 {
+    match channels {
+        Channels::Bands => {
+            let sun = DVec3::from_array(cie::tristimulus(solar::irradiance));
+            let srgb = ColourSpace::LinearSrgb;
+            srgb.from_xyz() * adaptation(sun, srgb.white_xyz() * sun.y) * three_bands::to_xyz()
+        }
+        Channels::Colour(space) => space.to_space(ColourSpace::LinearSrgb),
+    }
+}
+
+/// Luminance of linear sRGB (IEC 61966-2-1).
+const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
+
+/// Brings a colour that a screen cannot mix to the nearest that it can on the way to grey of the same luminance, so that
+/// hue and brightness stay. What has no luminance is black.
+pub fn into_gamut(linear: Bands) -> Bands {
+    let colour = DVec3::from_array(linear);
+    let (luminance, least) = (colour.dot(LUMINANCE), colour.min_element());
+    if least >= 0.0 {
+        return linear;
+    }
+    if luminance <= 0.0 {
+        return [0.0; 3];
+    }
+    let kept = luminance / (luminance - least);
+    (DVec3::splat(luminance) + (colour - luminance) * kept).max(DVec3::ZERO).to_array()
 }
 
 /// Exponent of the filmic curve, its contrast in the shadows. At middle grey the slope on doubly logarithmic axes is
@@ -27,18 +61,18 @@ const MIDDLE_GREY: f64 = 0.490_225_17;
 /// Radiance above which everything is white; it keeps the powers within f32.
 const WHITEST: f64 = 1e9;
 
-/// From exposed radiance in [0, ∞[ to linear light in [0, 1].
+/// From exposed linear sRGB to linear light in [0, 1]; colours out of gamut are first brought [`into_gamut`].
 ///
-/// The filmic curve takes the strongest band m to t = m^c / (m^c + k), a sigmoid in log m as film and the eye have it
-/// (Naka & Rushton 1966), with c = 1.3 and k such that 0.18 stays 0.18. The other bands keep their ratio to m, so that
-/// hue does not turn as it does where each band has its own curve, and all move towards white by the share t⁴: strong
+/// The filmic curve takes the strongest primary m to t = m^c / (m^c + k), a sigmoid in log m as film and the eye have it
+/// (Naka & Rushton 1966), with c = 1.3 and k such that 0.18 stays 0.18. The other primaries keep their ratio to m, so that
+/// hue does not turn as it does where each has its own curve, and all move towards white by the share t⁴: strong
 /// light is white, and a blue sky stays blue.
 pub fn tone_map(tone_map: ToneMap, exposed: Bands) -> Bands {
-    let exposed = exposed.map(|band| band.max(0.0));
+    let exposed = into_gamut(exposed);
     let strongest = exposed.iter().fold(0.0_f64, |strongest, &band| strongest.max(band));
     match tone_map {
         ToneMap::None => exposed.map(|band| band.min(1.0)),
-        ToneMap::Filmic if strongest == 0.0 => [0.0; BAND_COUNT],
+        ToneMap::Filmic if strongest == 0.0 => [0.0; 3],
         ToneMap::Filmic => {
             let powered = strongest.min(WHITEST).powf(CONTRAST);
             let t = powered / (powered + MIDDLE_GREY);
@@ -53,11 +87,11 @@ pub fn srgb_encoded(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// A frame as sRGB bytes, three a pixel, row by row from the top left; radiance is multiplied by `exposure` first.
-pub fn picture(frame: &Frame, exposure: Bands, curve: ToneMap) -> Vec<u8> {
+/// A frame as sRGB bytes, three a pixel, row by row from the top left; `exposed` takes its channels to exposed linear sRGB.
+pub fn picture(frame: &Frame, exposed: DMat3, curve: ToneMap) -> Vec<u8> {
     let pixel = |radiance: &[f32; 3]| {
-        let exposed = std::array::from_fn(|band| f64::from(radiance[band]) * exposure[band]);
-        tone_map(curve, exposed).map(|linear| (255.0 * srgb_encoded(linear)).round() as u8)
+        let linear = exposed * DVec3::from_array(radiance.map(f64::from));
+        tone_map(curve, linear.to_array()).map(|linear| (255.0 * srgb_encoded(linear)).round() as u8)
     };
     frame.radiance.iter().flat_map(pixel).collect()
 }
@@ -106,6 +140,19 @@ mod tests {
     fn the_sun_is_white_and_night_is_black() {
         assert_eq!(filmic([0.0; 3]), [0.0; 3]);
         assert!(filmic([3e12, 1e12, 1e12]).iter().all(|&band| band > 0.9999));
+    }
+
+    #[test]
+    fn a_colour_out_of_gamut_keeps_its_luminance_and_hue() {
+        let luminance = |colour: Bands| DVec3::from_array(colour).dot(LUMINANCE);
+        let deep_blue = [-0.05, 0.1, 1.5];
+        let shown = into_gamut(deep_blue);
+        assert!((luminance(shown) - luminance(deep_blue)).abs() < 1e-12 && shown[0].abs() < 1e-12, "{shown:?}");
+        // On the way to grey the differences between the primaries keep their ratio.
+        let ratio = |[r, g, b]: Bands| (g - r) / (b - r);
+        assert!((ratio(shown) - ratio(deep_blue)).abs() < 1e-12);
+        assert_eq!(into_gamut([0.2, 0.0, 3.0]), [0.2, 0.0, 3.0]);
+        assert_eq!(into_gamut([-1.0, 0.1, 0.1]), [0.0; 3]);
     }
 
     #[test]

@@ -4,14 +4,17 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::Path;
 
+use exr::meta::attribute::Chromaticities;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels,
-    ReadLayers, Text, WritableImage, read,
+    ReadLayers, Text, Vec2, WritableImage, read,
 };
+
+use welkin_lut::spectrum::{Channels, ColourSpace};
 
 use super::{AtomicFile, OutputError};
 use crate::frame::Frame;
-use crate::scene::Scene;
+use crate::scene::{CANDELA_PER_M2, Scene, White};
 
 /// The channels of a frame's spectral quantities, in order of storage.
 const RADIANCE: [&str; 3] = ["R", "G", "B"];
@@ -23,12 +26,19 @@ const DISTANCE: &str = "distance_m";
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ExrHeader {
     attributes: HashMap<Text, AttributeValue>,
+    chromaticities: Option<Chromaticities>,
 }
 
 impl ExrHeader {
     /// Units, bands, scene and camera.
     pub fn of_scene(scene: &Scene) -> Self {
-        Self { attributes: attributes(scene).into_iter().map(|(name, value)| (Text::from(name), value)).collect() }
+        Self {
+            attributes: attributes(scene).into_iter().map(|(name, value)| (Text::from(name), value)).collect(),
+            chromaticities: match scene.spectrum.channels {
+                Channels::Bands => None,
+                Channels::Colour(space) => Some(chromaticities(space)),
+            },
+        }
     }
 
     /// The header with another text.
@@ -47,7 +57,7 @@ impl ExrHeader {
 }
 
 /// Writes a frame as 32-bit floats: radiance in R, G and B; transmittance.R, .G and .B; distance_m; and, where the frame
-/// has it, standard_error.R, .G and .B. The header says units, bands, scene, camera and program. The same frame of the
+/// has it, standard_error.R, .G and .B. The header says units, colour space, scene, camera and program. The same frame of the
 /// same scene gives the same bytes.
 ///
 /// # Errors
@@ -71,6 +81,7 @@ pub fn write_exr_with_header(file: AtomicFile, frame: &Frame, header: &ExrHeader
     let channels = AnyChannels::sort(channels.into_iter().collect());
     let mut image = Image::from_layer(Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels));
     image.attributes.other = header.attributes.clone();
+    image.attributes.chromaticities = header.chromaticities;
     let mut bytes = Cursor::new(Vec::new());
     let written = image.write().to_buffered(&mut bytes);
     written.map_err(|source| OutputError::Encode { path: file.path().to_owned(), source: source.into() })?;
@@ -103,12 +114,40 @@ fn bands(names: [&str; 3], pixels: &[[f32; 3]]) -> Vec<AnyChannel<FlatSamples>> 
     names.iter().enumerate().map(|(band, &name)| AnyChannel::new(name, samples(band))).collect()
 }
 
+/// Which of [`Channels`] a file holds.
+const COLOUR_SPACE: &str = "colour_space";
+
+/// What R, G and B are, in words.
+fn meaning(scene: &Scene) -> String {
+    let spectrum = &scene.spectrum;
+    let Channels::Colour(space) = spectrum.channels else {
+        return "R, G, B: the scene's three bands; in presets 680, 550 and 440 nm".to_owned();
+    };
+    let white = match spectrum.white {
+        White::Sun => "the first directional light above the air",
+        White::D65 => "D65",
+    };
+    format!(
+        "R, G, B: linear {space} of {count} wavelengths, CIE 1931 2 degrees, with {white} as white; a spectral radiance \
+         that is the same at all wavelengths is its own luminance, and 1 is {CANDELA_PER_M2:.0} cd/m^2; transmittance is \
+         what is left of white light",
+        space = space.name(),
+        count = spectrum.wavelengths,
+    )
+}
+
+fn chromaticities(space: ColourSpace) -> Chromaticities {
+    let [red, green, blue, white] = space.chromaticities().map(|[x, y]| Vec2(x as f32, y as f32));
+    Chromaticities { red, green, blue, white }
+}
+
 fn attributes(scene: &Scene) -> Vec<(&'static str, AttributeValue)> {
     let text = |text: &str| AttributeValue::Text(Text::from(text));
     let camera = &scene.camera;
     vec![
         ("scene", text(&scene.name)),
-        ("bands", text("R, G, B: the scene's three bands; in presets 680, 550 and 440 nm")),
+        (COLOUR_SPACE, text(scene.spectrum.channels.name())),
+        ("bands", text(&meaning(scene))),
         ("radiance_unit", text("W m^-2 sr^-1 nm^-1")),
         ("standard_error_unit", text("W m^-2 sr^-1 nm^-1")),
         ("camera_altitude_m", AttributeValue::F64(camera.altitude_m)),
@@ -151,5 +190,7 @@ pub fn read_exr_with_header(path: &Path) -> Result<(Frame, ExrHeader), OutputErr
     frame.transmittance = spectral(TRANSMITTANCE).unwrap_or(frame.transmittance);
     frame.distance_m = channel(DISTANCE).unwrap_or(frame.distance_m);
     frame.standard_error = spectral(STANDARD_ERROR).ok();
-    Ok((frame, ExrHeader { attributes: layer.attributes.other }))
+    let header = ExrHeader { attributes: layer.attributes.other, chromaticities: image.attributes.chromaticities };
+    frame.channels = header.text(COLOUR_SPACE).and_then(|name| name.parse().ok());
+    Ok((frame, header))
 }

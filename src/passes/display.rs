@@ -2,8 +2,10 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::colour::padded_columns;
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{ImageFormat, ImageShape, Work};
+use crate::output::display;
 use crate::plan::{Declaration, Facts, Fingerprint, Need};
 use crate::scene::ToneMap;
 
@@ -14,9 +16,9 @@ pub const PASS: Pass = Pass {
     declaration: Declaration {
         name: NAME,
         need,
-        reads: &["radiance_image"],
+        reads: &["radiance_image", "colour_image"],
         writes: &["picture_image"],
-        inputs: |facts| Fingerprint::of(&facts.scene.display),
+        inputs: |facts| Fingerprint::of(&(facts.scene.display, display::exposed_bands(facts.scene))),
         bytes: |facts| shape(facts).texels() * ImageFormat::Rgba8Unorm.texel_bytes(),
     },
     record,
@@ -26,8 +28,7 @@ pub const PASS: Pass = Pass {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct DisplayBlock {
-    exposure: [f32; 3],
-    padding: f32,
+    to_srgb: [[f32; 4]; 3],
 }
 
 fn shape(facts: &Facts) -> ImageShape {
@@ -38,18 +39,25 @@ fn need(facts: &Facts) -> Need {
     if !facts.outputs.picture {
         return Need::NotNeeded("no 8-bit picture is asked for".to_owned());
     }
+    if facts.part.is_some_and(|part| !part.is_last()) {
+        return Need::NotNeeded("the picture is not whole before the last group of wavelengths".to_owned());
+    }
     Need::Needed(format!("exposure {} EV", facts.scene.display.exposure_ev))
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
     let scene = recording.facts.scene;
-    let exposure = crate::output::display::exposure(scene).map(|factor| factor as f32);
-    recording.insert_parameters("display", &DisplayBlock { exposure, padding: 0.0 });
+    let (to_srgb, seen) = match recording.facts.part {
+        None => (display::exposed_bands(scene), "radiance_image"),
+        Some(_) => (display::exposed_srgb(scene), "colour_image"),
+    };
+    let Some(seen) = recording.resources.existing_image(seen).cloned() else { return Ok(()) };
+    recording.insert_parameters("display", &DisplayBlock { to_srgb: padded_columns(to_srgb) });
     recording.resources.image("picture_image", shape, ImageFormat::Rgba8Unorm)?;
     let flags: &[&str] = match scene.display.tone_map {
         ToneMap::Filmic => &["FILMIC"],
         ToneMap::None => &[],
     };
-    recording.dispatch(NAME, flags, &[], Work::Invocations(shape.extent()))
+    recording.dispatch(NAME, flags, &[("radiance_image", &seen)], Work::Invocations(shape.extent()))
 }

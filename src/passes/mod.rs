@@ -14,6 +14,7 @@ mod cloud_ordinates;
 mod cloud_shape;
 mod cloud_weather;
 mod clouds;
+mod colour;
 mod compose;
 mod definitions;
 mod display;
@@ -83,7 +84,18 @@ pub const CLOUDS: [Pass; 8] = [
 ];
 
 /// What makes a frame of them, in order.
-pub const FRAME: [Pass; 3] = [terrain::PASS, compose::PASS, display::PASS];
+pub const FRAME: [Pass; 4] = [terrain::PASS, compose::PASS, colour::PASS, display::PASS];
+
+/// Images of a frame, which are filled anew for every group of wavelengths or gather all of them.
+pub const SHARED_IMAGES: [&str; 7] = [
+    "terrain_image",
+    "radiance_image",
+    "transmittance_image",
+    "distance_image",
+    "colour_image",
+    "colour_transmittance_image",
+    "picture_image",
+];
 
 /// Why a scene could not be rendered.
 #[derive(Debug, thiserror::Error)]

@@ -16,7 +16,17 @@ pub struct Resources {
     sampler: Sampler,
     images: BTreeMap<&'static str, GpuImage>,
     buffers: BTreeMap<&'static str, GpuBuffer>,
+    /// Those of other groups of wavelengths than the one at the front.
+    parked: Vec<Parked>,
+    group: usize,
     pipelines: HashMap<(&'static str, Definitions), Pipeline>,
+}
+
+/// Images and buffers of a group that is not at the front.
+#[derive(Default)]
+struct Parked {
+    images: BTreeMap<&'static str, GpuImage>,
+    buffers: BTreeMap<&'static str, GpuBuffer>,
 }
 
 impl Resources {
@@ -29,7 +39,15 @@ impl Resources {
             return Err(RenderError::NoLinearFilter { device: gpu.info().name.clone() });
         }
         let sampler = gpu.sampler(Filter::Linear, [AddressMode::Clamp; 3])?;
-        Ok(Self { gpu, sampler, images: BTreeMap::new(), buffers: BTreeMap::new(), pipelines: HashMap::new() })
+        Ok(Self {
+            gpu,
+            sampler,
+            images: BTreeMap::new(),
+            buffers: BTreeMap::new(),
+            parked: Vec::new(),
+            group: 0,
+            pipelines: HashMap::new(),
+        })
     }
 
     /// The image of a name, made anew unless it has this shape and format already.
@@ -89,6 +107,23 @@ impl Resources {
     /// Frees what a skipped pass would have left.
     pub fn release(&mut self, name: &str) {
         self.images.remove(name);
+    }
+
+    /// Brings the images and buffers of a group of wavelengths to the front; those of `shared` names come along.
+    pub fn select_group(&mut self, group: usize, shared: &[&'static str]) {
+        if group == self.group {
+            return;
+        }
+        let groups = self.parked.len().max(group + 1).max(self.group + 1);
+        self.parked.resize_with(groups, Parked::default);
+        let mut next = std::mem::take(&mut self.parked[group]);
+        for name in shared {
+            next.images.extend(self.images.remove_entry(name));
+        }
+        let images = std::mem::replace(&mut self.images, next.images);
+        let buffers = std::mem::replace(&mut self.buffers, next.buffers);
+        self.parked[self.group] = Parked { images, buffers };
+        self.group = group;
     }
 
     /// The pipeline of a pass, specialised; compiled when it is asked for the first time.

@@ -8,7 +8,7 @@ use super::disc::is_wide;
 use super::faint::{Reach, reach};
 use super::{CloudScattering, PlanError, Settings, Treatment};
 use crate::probe::Orders;
-use crate::scene::{DirectionalLight, Light, Scene};
+use crate::scene::{DirectionalLight, GroupColour, Light, Scene, WavelengthGroup};
 
 /// What is to come out of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -39,6 +39,26 @@ pub enum Viewpoint {
     InSpace,
 }
 
+/// One of several groups of wavelengths that make up a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpectralPart {
+    /// From 0, in the order in which groups are rendered.
+    pub index: usize,
+    /// How many groups there are.
+    pub count: usize,
+    /// Its wavelengths.
+    pub wavelengths: WavelengthGroup,
+    /// What it adds to the picture.
+    pub colour: GroupColour,
+}
+
+impl SpectralPart {
+    /// Whether the picture is whole after this one.
+    pub fn is_last(&self) -> bool {
+        self.index + 1 == self.count
+    }
+}
+
 /// Where each group of constituents ends in the sorted list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct ConstituentGroups {
@@ -67,6 +87,8 @@ pub struct Facts<'a> {
     pub orders: Orders,
     /// What is to come out.
     pub outputs: Outputs,
+    /// Which part of the picture this is; none where three wavelengths are all.
+    pub part: Option<SpectralPart>,
     /// Constituents that do something to light, in the shaders' order.
     pub constituents: Vec<&'a Constituent>,
     /// The groups of that order.
@@ -121,6 +143,7 @@ impl<'a> Facts<'a> {
             settings,
             orders,
             outputs,
+            part: None,
             groups,
             profile_groups: profile_groups(scatterers),
             treatment,

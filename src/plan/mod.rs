@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 pub use cloud_settings::{CloudScattering, CloudSettings};
 pub use declaration::{Declaration, Fingerprint, Need};
-pub use facts::{ConstituentGroups, Facts, Outputs, Surface, Viewpoint};
+pub use facts::{ConstituentGroups, Facts, Outputs, SpectralPart, Surface, Viewpoint};
 pub use multiple_scattering::{MultipleScattering, Treatment, expected_ringing};
 use serde::Serialize;
 pub use settings::{Directions, Quality, Settings, SourceGrid};
@@ -68,6 +68,11 @@ pub struct History {
 }
 
 impl History {
+    /// A pass's result was overwritten.
+    pub fn forget(&mut self, pass: &str) {
+        self.results.remove(pass);
+    }
+
     /// Remembers what a plan's passes have computed.
     pub fn record(&mut self, plan: &Plan) {
         for pass in &plan.passes {
@@ -81,6 +86,22 @@ impl History {
 }
 
 impl Plan {
+    /// The plans of a scene's groups of wavelengths as one. A pass runs where it runs for any group; the groups share the
+    /// bytes of the passes named, and each has its own of the others.
+    pub fn of_groups(plans: &[Self], shared: &[&str]) -> Self {
+        let mut passes = plans.last().map(|plan| plan.passes.clone()).unwrap_or_default();
+        for pass in &mut passes {
+            let same = |plan: &Self| plan.passes.iter().find(|other| other.name == pass.name).cloned();
+            let all: Vec<_> = plans.iter().filter_map(same).collect();
+            if let Some(running) = all.iter().find(|other| other.decision == Decision::Run) {
+                (pass.decision, pass.reason) = (Decision::Run, running.reason.clone());
+            }
+            let own = !shared.contains(&pass.name);
+            pass.bytes = if own { all.iter().map(|other| other.bytes).sum() } else { pass.bytes };
+        }
+        Self { passes }
+    }
+
     /// Decides for each declared pass, in order, whether it runs.
     pub fn new(facts: &Facts, history: &History, declarations: &[Declaration]) -> Self {
         let mut written: BTreeMap<&str, Fingerprint> = BTreeMap::new();

@@ -2,6 +2,7 @@
 
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8};
 use serde::Serialize;
+use welkin_lut::spectrum::{Channels, ColourSpace};
 use welkin_lut::{BAND_COUNT, BAND_NAMES};
 
 use crate::frame::Frame;
@@ -17,7 +18,8 @@ const DARK: f64 = 1e-4;
 pub struct Comparison {
     /// Pixels times bands compared: all of them.
     pub values: usize,
-    /// |a - b| / b over all pixels and bands; b counts as at least 1e-4 of its mean.
+    /// |a - b| / b over all pixels and bands, of colours over the pixel's strongest channel; b counts as at least 1e-4 of
+    /// its mean.
     pub relative_error: RelativeErrors,
     /// Root mean square of ln(a / b) where both are above 1e-4 of the reference's mean.
     pub rms_ln_ratio: f64,
@@ -46,6 +48,14 @@ pub struct RelativeErrors {
 /// Why two frames cannot be compared.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MetricsError {
+    /// The frames' channels hold different things.
+    #[error("the colour spaces differ: {a} against {b}; they must be the same")]
+    Channels {
+        /// What the frame's hold.
+        a: Channels,
+        /// What the reference's hold.
+        b: Channels,
+    },
     /// The frames have different sizes.
     #[error("the sizes differ: {a_width} x {a_height} against {b_width} x {b_height} pixels; they must be the same")]
     Size {
@@ -88,6 +98,11 @@ pub fn compare(a: &Frame, b: &Frame) -> Result<Comparison, MetricsError> {
         let (a_width, a_height, b_width, b_height) = (a.width, a.height, b.width, b.height);
         return Err(MetricsError::Size { a_width, a_height, b_width, b_height });
     }
+    if let (Some(in_a), Some(in_b)) = (a.channels, b.channels)
+        && in_a != in_b
+    {
+        return Err(MetricsError::Channels { a: in_a, b: in_b });
+    }
     check(a, "first")?;
     check(b, "second")?;
     let pairs: Vec<(f64, f64)> = values(a).zip(values(b)).collect();
@@ -100,7 +115,7 @@ pub fn compare(a: &Frame, b: &Frame) -> Result<Comparison, MetricsError> {
     let (squares, lit) = bright.fold((0.0, 0), |(squares, lit), (a, b)| (squares + (a / b).ln().powi(2), lit + 1));
     Ok(Comparison {
         values: pairs.len(),
-        relative_error: relative_errors(&pairs, dark),
+        relative_error: relative_errors(&pairs, dark, matches!(b.channels, Some(Channels::Colour(_)))),
         rms_ln_ratio: if lit == 0 { 0.0 } else { (squares / lit as f64).sqrt() },
         dark_values: pairs.len() - lit,
         energy_ratio: if sum_a == sum_b { 1.0 } else { sum_a / sum_b },
@@ -114,7 +129,9 @@ fn values(frame: &Frame) -> impl Iterator<Item = f64> {
 
 fn check(frame: &Frame, which: &'static str) -> Result<(), MetricsError> {
     let values = frame.radiance.as_flattened();
-    match values.iter().position(|value| !(value.is_finite() && *value >= 0.0)) {
+    // Colours that a space cannot mix are negative.
+    let colour = matches!(frame.channels, Some(Channels::Colour(_)));
+    match values.iter().position(|value| !(value.is_finite() && (colour || *value >= 0.0))) {
         None => Ok(()),
         Some(index) => {
             let (pixel, width) = (index / BAND_COUNT, frame.width as usize);
@@ -124,9 +141,17 @@ fn check(frame: &Frame, which: &'static str) -> Result<(), MetricsError> {
     }
 }
 
-fn relative_errors(pairs: &[(f64, f64)], dark: f64) -> RelativeErrors {
-    let relative = |(a, b): &(f64, f64)| if a == b { 0.0 } else { (a - b).abs() / b.max(dark) };
-    let mut errors: Vec<f64> = pairs.iter().map(relative).collect();
+/// Of a colour a channel may be near zero or negative beside the others, so its errors are relative to its strongest.
+fn relative_errors(pairs: &[(f64, f64)], dark: f64, colour: bool) -> RelativeErrors {
+    let relative = |a: f64, b: f64, scale: f64| if a == b { 0.0 } else { (a - b).abs() / scale.max(dark) };
+    let pixel = |channels: &[(f64, f64)]| -> [f64; BAND_COUNT] {
+        let strongest = channels.iter().fold(0.0_f64, |strongest, (_, b)| strongest.max(*b));
+        std::array::from_fn(|i| {
+            let (a, b) = channels[i];
+            relative(a, b, if colour { strongest } else { b })
+        })
+    };
+    let mut errors: Vec<f64> = pairs.chunks_exact(BAND_COUNT).flat_map(pixel).collect();
     errors.sort_unstable_by(f64::total_cmp);
     // The smallest error that at least this share of values does not exceed.
     let quantile = |share: f64| errors[((share * errors.len() as f64).ceil() as usize).clamp(1, errors.len()) - 1];
@@ -134,9 +159,12 @@ fn relative_errors(pairs: &[(f64, f64)], dark: f64) -> RelativeErrors {
 }
 
 fn mean_flip(a: &Frame, b: &Frame) -> f64 {
-    let exposure = [automatic_exposure(b); BAND_COUNT];
+    let exposure = automatic_exposure(b);
+    // Files that do not say what they hold count as what most of them do.
+    let srgb = Channels::Colour(ColourSpace::LinearSrgb);
+    let to_srgb = display::linear_srgb(a.channels.or(b.channels).unwrap_or(srgb));
     let image = |frame: &Frame| {
-        let picture = display::picture(frame, exposure, ToneMap::Filmic);
+        let picture = display::picture(frame, exposure * to_srgb, ToneMap::Filmic);
         FlipImageRgb8::with_data(frame.width, frame.height, &picture)
     };
     let map = nv_flip::flip(image(b), image(a), DEFAULT_PIXELS_PER_DEGREE).to_vec();

@@ -3,15 +3,19 @@
 use std::path::Path;
 
 use glam::DVec3;
-use welkin_lut::Planet;
 use welkin_lut::height_field::HeightField;
+use welkin_lut::spectrum::{Channels, ColourSpace};
+use welkin_lut::{BAND_COUNT, BAND_WAVELENGTHS_NM, Planet};
 
 use super::clouds::assemble_clouds;
 use super::file::{
-    CameraFile, DisplayFile, LightsFile, PlanetFile, SceneFile, SunFile, TerrainFile, ToneMapFile, WhenFile,
+    CameraFile, ChannelsFile, DisplayFile, LightsFile, MediumFile, PlanetFile, SceneFile, SunFile, TerrainFile,
+    ToneMapFile, WhenFile, WhiteFile, listed,
 };
 use super::medium::assemble_medium;
 use super::moon::assemble_moon;
+use super::read::SpectrumRequest;
+use super::spectrum::{Sources, Spectrum, White};
 use super::sun_position::sun_direction;
 use super::{
     Camera, Direction, DirectionalLight, Display, EnvironmentLight, Light, PointLight, Preset, Problem, Scene, Terrain,
@@ -23,7 +27,7 @@ const DEFAULT_WIDTH: u32 = 1280;
 const DEFAULT_HEIGHT: u32 = 720;
 
 /// Joins file and preset; every range is already checked by the file's types, so only what fields say together is left.
-pub fn assemble(file: &SceneFile, path: &Path) -> Result<Scene, Problem> {
+pub fn assemble(file: &SceneFile, path: &Path, request: SpectrumRequest) -> Result<Scene, Problem> {
     let planet = assemble_planet(&file.planet, file.preset);
     planet.validate().map_err(|error| Problem::new("planet", error.to_string()))?;
     let medium = assemble_medium(file.medium.as_ref(), file.preset, path.parent().unwrap_or(Path::new("")))?;
@@ -43,8 +47,47 @@ pub fn assemble(file: &SceneFile, path: &Path) -> Result<Scene, Problem> {
     let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let name = file.name.clone().unwrap_or_else(stem);
     let terrain = file.terrain.as_ref().map(|file| assemble_terrain(file, &planet)).transpose()?;
-    let display = assemble_display(&file.display);
-    Ok(Scene { name, planet, medium, clouds, time_s, lights, terrain, camera, display })
+    let spectrum = assemble_spectrum(file, request)?;
+    Ok(Scene {
+        name,
+        planet,
+        medium,
+        clouds,
+        time_s,
+        lights,
+        terrain,
+        camera,
+        spectrum,
+        display: assemble_display(&file.display),
+    })
+}
+
+/// A command's request goes before the file. Bands are what channels hold where nobody speaks of spectra or colour.
+fn assemble_spectrum(file: &SceneFile, request: SpectrumRequest) -> Result<Spectrum, Problem> {
+    let section = file.spectrum.as_ref();
+    let said = section.and_then(|section| section.wavelengths).map(|count| count.get());
+    let wavelengths = request.wavelengths.or(said).unwrap_or(BAND_COUNT);
+    let named = section.and_then(|section| section.colour_space).map(|channels| match channels {
+        ChannelsFile::Bands => Channels::Bands,
+        ChannelsFile::LinearSrgb => Channels::Colour(ColourSpace::LinearSrgb),
+        ChannelsFile::Rec2020 => Channels::Colour(ColourSpace::Rec2020),
+        ChannelsFile::AcesCg => Channels::Colour(ColourSpace::AcesCg),
+    });
+    let silent = section.is_none() && request.wavelengths.is_none();
+    let default = if silent { Channels::Bands } else { Channels::Colour(ColourSpace::LinearSrgb) };
+    let channels = request.channels.or(named).unwrap_or(default);
+    if channels == Channels::Bands && wavelengths != BAND_COUNT {
+        let message = format!("invalid value: `bands`, expected a colour space for {wavelengths} wavelengths");
+        return Err(Problem::new("spectrum.colour_space", message));
+    }
+    let white = match section.and_then(|section| section.white) {
+        None | Some(WhiteFile::Sun) => White::Sun,
+        Some(WhiteFile::D65) => White::D65,
+    };
+    let presets_air = !matches!(file.medium, Some(MediumFile::Complete(_)));
+    let terrain_has_albedo = file.terrain.as_ref().is_some_and(|terrain| terrain.albedo.is_some());
+    let sources = Sources { preset: file.preset, presets_air, terrain_has_albedo, listed: listed(file) };
+    Ok(Spectrum { wavelengths, channels, white, sources })
 }
 
 fn assemble_planet(file: &PlanetFile, preset: Preset) -> Planet {
@@ -100,6 +143,7 @@ fn assemble_sun(file: &SunFile, preset: Preset) -> Result<DirectionalLight, Prob
         angular_radius_rad: angular_radius_rad.unwrap_or(default.angular_radius_rad),
         limb_darkening: file.limb_darkening.unwrap_or(default.limb_darkening),
         sphere: None,
+        wavelengths_nm: BAND_WAVELENGTHS_NM,
     })
 }
 
@@ -142,6 +186,7 @@ fn add_lights(file: &LightsFile, lights: &mut Vec<Light>) -> Result<(), Problem>
             angular_radius_rad: light.angular_radius_deg.map_or(0.0, |radius| radius.get().to_radians()),
             limb_darkening: light.limb_darkening,
             sphere: None,
+            wavelengths_nm: BAND_WAVELENGTHS_NM,
         }));
     }
     for (index, light) in file.point.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! What shines on the scene.
 
 use glam::DVec3;
-use welkin_lut::{BAND_COUNT, BAND_WAVELENGTHS_NM, Bands};
+use welkin_lut::{BAND_COUNT, Bands};
 
 use super::{Direction, LitSphere};
 
@@ -31,6 +31,8 @@ pub struct DirectionalLight {
     pub limb_darkening: bool,
     /// Light spread over the disc as over a sphere lit from one side, in place of limb darkening: a moon.
     pub sphere: Option<LitSphere>,
+    /// Wavelengths of the three bands, nm, on which limb darkening depends.
+    pub wavelengths_nm: Bands,
 }
 
 impl DirectionalLight {
@@ -40,7 +42,7 @@ impl DirectionalLight {
     /// k = -0.023 + 0.292 µm / λ: Hestroffer & Magnan 1998, A&A 333, 338, eq. 5.
     pub fn limb_exponent(&self) -> Bands {
         match self.limb_darkening {
-            true => BAND_WAVELENGTHS_NM.map(|wavelength_nm| -0.023 + 292.0 / wavelength_nm),
+            true => self.wavelengths_nm.map(|wavelength_nm| -0.023 + 292.0 / wavelength_nm),
             false => [0.0; BAND_COUNT],
         }
     }

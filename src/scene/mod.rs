@@ -15,6 +15,7 @@ mod moon;
 mod moon_position;
 mod preset;
 mod read;
+mod spectrum;
 mod sun_position;
 mod terrain;
 
@@ -26,6 +27,8 @@ pub use light::{DirectionalLight, EnvironmentLight, Light, PointLight};
 pub use lit_sphere::LitSphere;
 pub use locate::Place;
 pub use preset::{Preset, PresetSun};
+pub use read::SpectrumRequest;
+pub use spectrum::{CANDELA_PER_M2, GroupColour, Spectrum, WavelengthGroup, White};
 pub use sun_position::{SunPositionError, sun_direction};
 pub use terrain::Terrain;
 
@@ -39,7 +42,7 @@ pub struct Scene {
     pub name: String,
     /// The solid sphere and the shell of air around it.
     pub planet: Planet,
-    /// What the air is made of.
+    /// What the air is made of, in the bands at 680, 550 and 440 nm.
     pub medium: Medium,
     /// Layers of clouds, which may overlap.
     pub clouds: Vec<CloudLayer>,
@@ -51,6 +54,8 @@ pub struct Scene {
     pub terrain: Option<Terrain>,
     /// Where the picture is taken from, and its size.
     pub camera: Camera,
+    /// Which wavelengths are computed, and the colours they become.
+    pub spectrum: Spectrum,
     /// How radiance becomes a PNG; does not touch the EXR.
     pub display: Display,
 }

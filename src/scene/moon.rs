@@ -64,6 +64,7 @@ pub fn assemble_moon(
         irradiance: file.irradiance.as_ref().map_or(computed, |irradiance| irradiance.get()),
         angular_radius_rad: radius_rad,
         limb_darkening: false,
+        wavelengths_nm: BAND_WAVELENGTHS_NM,
         sphere: Some(LitSphere { toward_source: source_direction(toward, toward_sun, phase_rad), even_share }),
     })
 }

@@ -12,6 +12,9 @@ pub fn error(root: &Value, schema: &Value, instance: &Value) -> Option<String> {
             "properties" | "items" | "additionalProperties" => return members(root, schema, keyword, wanted, instance),
             "anyOf" => options_that_fit(root, wanted, instance) > 0,
             "oneOf" => options_that_fit(root, wanted, instance) == 1,
+            "prefixItems" => {
+                return wanted.as_array()?.iter().zip(instance.as_array()?).find_map(|(s, item)| error(root, s, item));
+            }
             "type" => type_names(wanted).any(|name| has_type(instance, name)),
             "const" => instance == wanted,
             "enum" => wanted.as_array()?.contains(instance),

@@ -13,6 +13,7 @@ use welkin::scene::Scene;
 
 use super::accuracy::Accuracy;
 use super::backend::Backend;
+use super::spectrum::SpectrumArguments;
 use super::{Failure, stdout};
 
 /// Render a scene to pictures
@@ -22,7 +23,9 @@ use super::{Failure, stdout};
 pub struct Arguments {
     /// The scene file
     scene: PathBuf,
-    /// A picture to write: linear radiance as .exr, what a screen shows as .png; may be given several times
+    #[command(flatten)]
+    spectrum: SpectrumArguments,
+    /// A picture to write: linear radiance or colour as .exr, what a screen shows as .png; may be given several times
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
     /// What computes light
@@ -77,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ("--depth", Backend::Gpu, arguments.depth.is_some()),
         ("--samples", Backend::Reference, arguments.samples.is_some()),
     ])?;
-    let scene = Scene::read(&arguments.scene)?;
+    let scene = Scene::read_with(&arguments.scene, arguments.spectrum.request())?;
     let formats = arguments.output.iter().map(|path| format_of(path)).collect::<Result<Vec<_>, _>>()?;
     // Opened first: a place that cannot be written is said before time is spent.
     let files = arguments.output.iter().map(|path| AtomicFile::create(path)).collect::<Result<Vec<_>, _>>()?;

@@ -29,7 +29,7 @@ pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<
     let walks = sampling.most_walks();
     let frame = view.develop(&film);
     let picture = match outputs.picture {
-        true => display::picture(&frame, display::exposure(scene), scene.display.tone_map),
+        true => display::picture(&frame, display::exposed_srgb(scene), scene.display.tone_map),
         false => Vec::new(),
     };
     let name = &scene.name;

@@ -12,7 +12,7 @@ use crate::scene::Scene;
 pub struct Identity {
     /// Name of the scene, for messages.
     pub scene: String,
-    /// Fingerprint of the scene's planet, medium, clouds, lights and camera.
+    /// Fingerprint of the scene's planet, medium, clouds, lights, camera and spectrum.
     pub fingerprint: Fingerprint,
     /// Version of the program, because a new one may walk differently.
     pub version: String,
@@ -59,10 +59,8 @@ impl Identity {
     /// Of one part of a scene's picture.
     pub fn new(scene: &Scene, solver: &Solver, seed: u64, sampling: &Sampling, shard: Shard) -> Self {
         // Debug prints every number so that it reads back as the same bits. Name and display do not touch radiance.
-        let problem = format!(
-            "{:?}",
-            (&scene.planet, &scene.medium, &scene.clouds, scene.time_s, &scene.lights, &scene.terrain, &scene.camera)
-        );
+        let Scene { planet, medium, clouds, time_s, lights, terrain, camera, spectrum, .. } = scene;
+        let problem = format!("{:?}", (planet, medium, clouds, time_s, lights, terrain, camera, spectrum));
         Self {
             scene: scene.name.clone(),
             fingerprint: Fingerprint::of(&problem),

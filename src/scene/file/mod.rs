@@ -6,6 +6,7 @@ mod medium;
 mod moon;
 pub mod number;
 mod per_band;
+mod spectrum;
 mod terrain;
 
 pub use clouds::CloudFile;
@@ -13,6 +14,7 @@ pub use light::{LightsFile, SunFile, WhenFile};
 pub use medium::{ConstituentChange, ConstituentFile, MediumFile, PhaseFile, ProfileFile};
 pub use moon::MoonFile;
 pub use per_band::PerBand;
+pub use spectrum::{ChannelsFile, SpectrumFile, WhiteFile, listed};
 pub use terrain::TerrainFile;
 
 use schemars::JsonSchema;
@@ -50,6 +52,8 @@ pub struct SceneFile {
     pub terrain: Option<TerrainFile>,
     /// Where the picture is taken from.
     pub camera: CameraFile,
+    /// Which wavelengths are computed, and the colours they become; by default the three bands.
+    pub spectrum: Option<SpectrumFile>,
     /// How radiance becomes a picture; does not touch an EXR file.
     #[serde(default)]
     pub display: DisplayFile,

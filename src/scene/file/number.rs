@@ -172,6 +172,8 @@ intervals! {
     AngularRadius: Included(0.0), Included(45.0);
     /// A phase angle, degrees.
     PhaseAngle: Included(0.0), Included(180.0);
+    /// A wavelength at which a spectrum is listed, nm.
+    Wavelength: Included(100.0), Included(10_000.0);
     /// An exposure, powers of two.
     Exposure: Included(-50.0), Included(50.0);
 }

@@ -6,7 +6,8 @@
 //! with it the blue glow around a low sun in a butterscotch sky (Ehlers et al. 2014, Appl. Opt. 53, 1808: it is
 //! near-forward scattering, not extinction).
 
-use welkin_lut::{BAND_COUNT, Bands, Medium, PhaseFunction, Planet};
+use welkin_lut::spectrum::scaled_between_bands;
+use welkin_lut::{BAND_COUNT, BAND_WAVELENGTHS_NM, Bands, Medium, PhaseFunction, Planet};
 
 use super::{PresetSun, SOLAR_ANGULAR_RADIUS_RAD, SOLAR_IRRADIANCE, exponential};
 
@@ -42,7 +43,7 @@ pub fn planet() -> Planet {
 }
 
 pub fn medium() -> Medium {
-    let half = 0.5 * DUST_OPTICAL_DEPTH / SCALE_HEIGHT_M;
+    let half = HALF_PER_M;
     // ω c = c/2 + b: what the albedo leaves for light that went through a grain.
     let refracted: Bands = std::array::from_fn(|band| half * (2.0 * DUST_ALBEDO[band] - 1.0));
     let absorbed: Bands = std::array::from_fn(|band| half - refracted[band]);
@@ -69,6 +70,37 @@ pub fn sun() -> PresetSun {
         angular_radius_rad: SOLAR_ANGULAR_RADIUS_RAD / DISTANCE_AU,
         limb_darkening: true,
     }
+}
+
+/// Half of the dust's extinction, which is the same at all wavelengths, 1/m.
+const HALF_PER_M: f64 = 0.5 * DUST_OPTICAL_DEPTH / SCALE_HEIGHT_M;
+
+/// How much of the diffraction belongs to the narrow lobe: all of it at 440 nm and none at 550 nm, linear in between, for
+/// the lobe narrows steadily as the wave gets shorter.
+fn narrow_share(wavelength_nm: f64) -> f64 {
+    let [_, green_nm, blue_nm] = BAND_WAVELENGTHS_NM;
+    ((green_nm - wavelength_nm) / (green_nm - blue_nm)).clamp(0.0, 1.0)
+}
+
+/// `dust_diffraction_rg` at any wavelength, 1/m.
+pub fn wide_diffraction_per_m(wavelength_nm: f64) -> f64 {
+    HALF_PER_M * (1.0 - narrow_share(wavelength_nm))
+}
+
+/// `dust_diffraction_b` at any wavelength, 1/m.
+pub fn narrow_diffraction_per_m(wavelength_nm: f64) -> f64 {
+    HALF_PER_M * narrow_share(wavelength_nm)
+}
+
+/// Scattering by `dust_refraction` at any wavelength, 1/m: the albedo is linear between the bands, constant beyond.
+pub fn refraction_per_m(wavelength_nm: f64) -> f64 {
+    let albedo = scaled_between_bands(|_| 1.0, [1.0; BAND_COUNT], DUST_ALBEDO, wavelength_nm);
+    HALF_PER_M * (2.0 * albedo - 1.0)
+}
+
+/// Absorption by `dust_refraction` at any wavelength, 1/m.
+pub fn absorption_per_m(wavelength_nm: f64) -> f64 {
+    HALF_PER_M - refraction_per_m(wavelength_nm)
 }
 
 #[cfg(test)]

@@ -4,9 +4,13 @@ mod airglow;
 mod earth;
 mod hillaire2020;
 mod mars;
+mod spectra;
+
+pub(super) use spectra::Quantity;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
+use welkin_lut::spectrum::three_bands::SOLAR_IRRADIANCE;
 use welkin_lut::{Bands, Constituent, DensityProfile, Medium, PhaseFunction, Planet};
 
 /// A planet with its air and sun, from published numbers.
@@ -31,10 +35,6 @@ pub struct PresetSun {
     /// Whether the disc darkens towards its limb.
     pub limb_darkening: bool,
 }
-
-/// Solar irradiance at 680, 550 and 440 nm at one astronomical unit (ASTM G173-03, as the engines of the field have
-/// it), W·m⁻²·nm⁻¹.
-const SOLAR_IRRADIANCE: Bands = [1.474, 1.8504, 1.91198];
 
 /// The sun's mean angular radius at one astronomical unit: 695 700 km (IAU 2015 resolution B3) over 149 597 870.7 km, rad.
 const SOLAR_ANGULAR_RADIUS_RAD: f64 = 695_700.0 / 149_597_870.7;
@@ -108,8 +108,10 @@ fn exponential(
 }
 
 /// Ozone in a triangle over altitude between 10 and 40 km. 300 Dobson units are 8.06e22 molecules/m²; spread over the
-/// triangle's 15 km they peak at 5.37e18 /m³, times the cross sections 1.21e-25, 3.50e-25 and 1.58e-26 m² at 680, 550
-/// and 440 nm.
+/// triangle's 15 km they have this peak, 1/m³.
+const OZONE_PEAK_PER_M3: f64 = 8.06e22 / 15_000.0;
+
+/// That ozone, at its peak times the cross sections 1.21e-25, 3.50e-25 and 1.58e-26 m² at 680, 550 and 440 nm.
 fn ozone() -> Constituent {
     Constituent {
         name: "ozone".to_owned(),

@@ -1,0 +1,111 @@
+//! More wavelengths than three: groups of three, one after the other, each with tables of its own.
+//!
+//! Tables stay on the device for each group, so that only what a change touches is computed again; the images of a frame
+//! are shared, and what the wavelengths show is added up in them.
+
+use glam::{DMat3, DVec3};
+use welkin_lut::spectrum::Channels;
+
+use super::{Rendered, Renderer, Timings};
+use crate::frame::Frame;
+use crate::passes::{CLOUDS, FRAME, RenderError, SHARED_IMAGES, TABLES};
+use crate::plan::{Facts, History, Outputs, Plan, Settings, SpectralPart};
+use crate::probe::Orders;
+use crate::scene::Scene;
+
+impl Renderer {
+    /// What the first frame of every group would run, as one plan.
+    pub(super) fn plan_groups(scene: &Scene, settings: Settings, outputs: Outputs) -> Result<Plan, RenderError> {
+        let declarations: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).map(|pass| pass.declaration).collect();
+        let plan = |part: SpectralPart| -> Result<Plan, RenderError> {
+            let at = scene.at(&part.wavelengths);
+            let facts = Facts { part: Some(part), ..Facts::new(&at, settings, Orders::All, outputs)? };
+            Ok(Plan::new(&facts, &History::default(), &declarations))
+        };
+        Ok(Plan::of_groups(&parts(scene).into_iter().map(plan).collect::<Result<Vec<_>, _>>()?, &SHARED_PASSES))
+    }
+
+    /// Renders the groups and adds them up.
+    pub(super) fn render_groups(
+        &mut self,
+        scene: &Scene,
+        settings: Settings,
+        outputs: Outputs,
+    ) -> Result<Rendered, RenderError> {
+        let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
+        let mut all = Vec::new();
+        let parts = parts(scene);
+        for part in &parts {
+            let at = scene.at(&part.wavelengths);
+            let facts = Facts { part: Some(*part), ..Facts::new(&at, settings, Orders::All, outputs)? };
+            self.select_group(part.index);
+            let timings = self.execute("frame", &facts, &passes, 0);
+            // The next group overwrites the images of the frame.
+            FRAME.iter().for_each(|pass| self.history.forget(pass.declaration.name));
+            all.push(timings?);
+        }
+        let result = self.read_colour(scene, outputs);
+        self.select_group(0);
+        FRAME.iter().for_each(|pass| self.history.forget(pass.declaration.name));
+        let (frame, picture) = result?;
+        Ok(Rendered { frame, picture, timings: joined(all) })
+    }
+
+    fn read_colour(&self, scene: &Scene, outputs: Outputs) -> Result<(Frame, Option<Vec<u8>>), RenderError> {
+        let images = ["colour_image", "colour_transmittance_image"];
+        let (mut frame, picture) = self.read_images(&scene.camera, outputs, images)?;
+        frame.channels = Some(scene.spectrum.channels);
+        Ok((frame, picture))
+    }
+
+    /// Brings a group's tables and history to the front.
+    fn select_group(&mut self, group: usize) {
+        let groups = self.histories.len().max(group + 1).max(self.group + 1);
+        self.histories.resize_with(groups, History::default);
+        self.histories[self.group] = std::mem::take(&mut self.history);
+        self.history = std::mem::take(&mut self.histories[group]);
+        self.group = group;
+        self.resources.select_group(group, &SHARED_IMAGES);
+    }
+}
+
+/// Passes whose results the groups share.
+const SHARED_PASSES: [&str; 4] = ["terrain", "compose", "colour", "display"];
+
+fn parts(scene: &Scene) -> Vec<SpectralPart> {
+    let (groups, colours) = (scene.spectrum.groups(), scene.colour());
+    let count = groups.len();
+    let part = |(index, (wavelengths, colour))| SpectralPart { index, count, wavelengths, colour };
+    groups.into_iter().zip(colours).enumerate().map(part).collect()
+}
+
+/// The plans of all groups as one, with the sum of their times.
+fn joined(all: Vec<Timings>) -> Timings {
+    let plans: Vec<_> = all.iter().map(|timings| timings.plan.clone()).collect();
+    let mut joined =
+        Timings { plan: Plan::of_groups(&plans, &SHARED_PASSES), milliseconds: Default::default(), clock: None };
+    for timings in all {
+        joined.clock = timings.clock.or(joined.clock);
+        for (name, milliseconds) in timings.milliseconds {
+            *joined.milliseconds.entry(name).or_insert(0.0) += milliseconds;
+        }
+    }
+    joined
+}
+
+/// A frame of bands as the channels that its scene asks for.
+pub(super) fn in_channels(mut frame: Frame, scene: &Scene) -> Frame {
+    if scene.spectrum.channels == Channels::Bands {
+        return frame;
+    }
+    let colour = scene.colour()[0];
+    let convert = |pixels: &mut Vec<[f32; 3]>, matrix: DMat3| {
+        for pixel in pixels {
+            *pixel = (matrix * DVec3::from_array(pixel.map(f64::from))).as_vec3().to_array();
+        }
+    };
+    convert(&mut frame.radiance, colour.radiance);
+    convert(&mut frame.transmittance, colour.transmittance);
+    frame.channels = Some(scene.spectrum.channels);
+    frame
+}
