@@ -8,7 +8,7 @@ use welkin::probe::Orders;
 use welkin::reference::Effort;
 use welkin::reference::path::{FirstOrderBy, View};
 use welkin::reference::probe::run;
-use welkin::reference::slab::{Slab, SlabFluxes};
+use welkin::reference::slab::{Exit, Side, Slab, SlabFluxes};
 use welkin_lut::PhaseFunction;
 
 fn slab(row: &Row) -> Slab {
@@ -165,6 +165,35 @@ fn radiances_by_the_path_tracer_match_the_discrete_ordinate_table() {
     assert!(scores.iter().all(|z| z.abs() < 4.5), "{scores:?}");
     // Control: slabs that absorb a tenth more are told apart.
     assert!(mean_square(0.9).0 > most);
+}
+
+#[test]
+fn radiances_of_thick_slabs_match_the_discrete_ordinate_table_at_both_sides() {
+    let rows: Vec<Row> = tables::read("slab_radiance.csv").into_iter().filter(|r| r.number("tau") > 10.0).collect();
+    let scores = |albedo_factor: f64| -> Vec<f64> {
+        let spread = rows.iter().enumerate().step_by(47);
+        let score = |(i, row): (usize, &Row)| {
+            let slab = Slab {
+                optical_thickness: row.number("tau"),
+                albedo: albedo_factor * row.number("ssa"),
+                phase: tables::phase(row.text("phase")),
+                mu0: row.number("mu0"),
+                surface_albedo: 0.0,
+            };
+            let side = if row.text("side") == "top_up" { Side::Top } else { Side::Bottom };
+            let azimuth_rad = row.number("rel_azimuth_deg").to_radians();
+            let own =
+                slab.radiance_to(&Exit { side, mu: row.number("mu_view"), azimuth_rad }, 0.02, 5 << 32 | i as u64);
+            let table = row.number("radiance");
+            assert!(own.standard_error < 0.03 * own.value, "{slab:?} {side:?}: {own:?}");
+            (own.value - table) / (own.standard_error.powi(2) + (1e-3 * table).powi(2)).sqrt()
+        };
+        spread.map(score).collect()
+    };
+    let own = scores(1.0);
+    assert!(own.iter().all(|z| z.abs() < 4.5), "{own:?}");
+    // Control: what gets through tells of an albedo that is a hundredth smaller.
+    assert!(scores(0.99).iter().any(|z| z.abs() > 4.5));
 }
 
 fn radiance_scores(rows: &[Row], albedo_factor: f64) -> Vec<f64> {

@@ -22,6 +22,9 @@ pub struct Options {
     /// Seed of the random numbers
     #[arg(long, default_value = "1")]
     pub seed: u64,
+    /// Trace the radiances of slabs with the path tracer that pictures come from, in place of the slabs' own code
+    #[arg(long)]
+    pub path: bool,
     /// Keep answers in this file, and go on from those that it has
     #[arg(long, value_name = "FILE")]
     pub ledger: Option<String>,
@@ -43,6 +46,7 @@ pub enum Table {
 impl Options {
     /// What a ledger of this run belongs to.
     pub fn identity(&self, file: &str) -> String {
-        format!("{file}, error {}, seed {}", self.error, self.seed)
+        let by = if self.path { ", by paths" } else { "" };
+        format!("{file}, error {}, seed {}{by}", self.error, self.seed)
     }
 }

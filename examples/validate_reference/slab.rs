@@ -1,4 +1,4 @@
-//! Homogeneous slabs: fluxes by the forward code, radiances by the path tracer.
+//! Homogeneous slabs: fluxes and radiances by the forward codes, radiances also by the path tracer.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -7,7 +7,8 @@ use welkin::probe::Orders;
 use welkin::reference::Effort;
 use welkin::reference::path::{FirstOrderBy, View};
 use welkin::reference::probe::run;
-use welkin::reference::slab::Slab;
+use welkin::reference::slab::{Exit, Side, Slab};
+use welkin_lut::PhaseFunction;
 
 use crate::ledger::Ledger;
 use crate::options::Options;
@@ -25,13 +26,7 @@ pub fn fluxes(options: &Options) -> Result<bool, String> {
     let mut groups: BTreeMap<String, Vec<Score>> = BTreeMap::new();
     let mut longest = 0.0_f64;
     for (i, row) in tables::read("slab.csv").iter().enumerate().step_by(options.every) {
-        let slab = Slab {
-            optical_thickness: row.number("tau"),
-            albedo: row.number("ssa"),
-            phase: tables::phase(row.text("phase")),
-            mu0: row.number("mu0"),
-            surface_albedo: row.number("surface_albedo"),
-        };
+        let slab = slab(row, tables::phase(row.text("phase")), row.number("surface_albedo"));
         let found = ledger.answer(&format!("{slab:?}"), || {
             let start = Instant::now();
             let own = slab.fluxes_to(options.error, options.seed << 32 | i as u64);
@@ -56,7 +51,7 @@ pub fn fluxes(options: &Options) -> Result<bool, String> {
     Ok(report(groups))
 }
 
-/// Radiances of every `every`-th row by the path tracer; true when the codes differ.
+/// Radiances of every `every`-th row; true when the codes differ.
 pub fn radiances(options: &Options) -> Result<bool, String> {
     let ledger = Ledger::open(options.ledger.as_deref(), &options.identity("slab_radiance.csv"))?;
     let mut groups: BTreeMap<String, Vec<Score>> = BTreeMap::new();
@@ -64,7 +59,7 @@ pub fn radiances(options: &Options) -> Result<bool, String> {
     for (i, row) in tables::read("slab_radiance.csv").iter().enumerate().step_by(options.every) {
         let found = ledger.answer(&row.line(), || {
             let start = Instant::now();
-            let (value, error) = radiance(row, options.error, options.seed << 32 | i as u64);
+            let (value, error) = radiance(row, options, options.seed << 32 | i as u64);
             vec![value, error, start.elapsed().as_secs_f64()]
         });
         longest = longest.max(found[2]);
@@ -77,13 +72,30 @@ pub fn radiances(options: &Options) -> Result<bool, String> {
     Ok(report(groups))
 }
 
-fn radiance(row: &Row, error: f64, seed: u64) -> (f64, f64) {
+fn radiance(row: &Row, options: &Options, seed: u64) -> (f64, f64) {
     let phase = tables::phase(row.text("phase"));
-    let world = tables::slab_world(row.number("tau"), row.number("ssa"), phase, row.number("mu0"), 0.0);
-    let (position, direction) = tables::slab_ray(row);
-    let view = View::new(&world, position, direction, FirstOrderBy::Quadrature);
-    let estimate = run(&view, Effort::RelativeError(error), Orders::All, seed, 0);
-    (estimate.mean.total()[0], estimate.total_error[0])
+    if options.path {
+        let world = tables::slab_world(row.number("tau"), row.number("ssa"), phase, row.number("mu0"), 0.0);
+        let (position, direction) = tables::slab_ray(row);
+        let view = View::new(&world, position, direction, FirstOrderBy::Quadrature);
+        let estimate = run(&view, Effort::RelativeError(options.error), Orders::All, seed, 0);
+        return (estimate.mean.total()[0], estimate.total_error[0]);
+    }
+    let slab = slab(row, phase, 0.0);
+    let side = if row.text("side") == "top_up" { Side::Top } else { Side::Bottom };
+    let azimuth_rad = row.number("rel_azimuth_deg").to_radians();
+    let found = slab.radiance_to(&Exit { side, mu: row.number("mu_view"), azimuth_rad }, options.error, seed);
+    (found.value, found.standard_error)
+}
+
+fn slab(row: &Row, phase: PhaseFunction, surface_albedo: f64) -> Slab {
+    Slab {
+        optical_thickness: row.number("tau"),
+        albedo: row.number("ssa"),
+        phase,
+        mu0: row.number("mu0"),
+        surface_albedo,
+    }
 }
 
 fn score(row: &Row, column: &str, value: f64, own_error: f64, accuracy: f64) -> Score {

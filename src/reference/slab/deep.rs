@@ -176,6 +176,6 @@ impl<'a> Deep<'a> {
 }
 
 /// ∫ e^(-rate s) ds from 0 to `length`.
-fn reach(rate: f64, length: f64) -> f64 {
+pub(super) fn reach(rate: f64, length: f64) -> f64 {
     -(-rate * length).exp_m1() / rate
 }

@@ -7,8 +7,10 @@
 mod asymptotic;
 mod deep;
 mod forward;
+mod radiance;
 
 use deep::Deep;
+pub use radiance::{Exit, Side};
 use welkin_lut::PhaseFunction;
 
 /// Independent batches behind the standard errors.
@@ -82,12 +84,6 @@ impl Slab {
         let excess = |m: Measured| if m.value > 0.0 { m.standard_error / (relative_error * m.value) } else { 0.0 };
         let transmitted = excess(first.diffuse_transmittance);
         let reflected = excess(first.reflectance);
-        let count = |excess: f64, steps: f64| -> u64 {
-            // The errors of this round and of the result are themselves uncertain by 9 % each, and a round that has missed
-            // the rare walks by more: with 1.25 in the place of 1.6 one result in fifty was not good enough.
-            let wanted = PILOT_WALKS as f64 * (1.6 * excess).powi(2).max(1.0);
-            wanted.min(MOST_STEPS / steps.max(1.0)).max(1.0) as u64
-        };
         let mean = |steps: &mut dyn Iterator<Item = f64>| steps.sum::<f64>() / BATCHES as f64;
         let forward_steps = mean(&mut forward.iter().map(|s| s.steps));
         let Some((deep, pilot)) = deep.zip(pilot) else {
@@ -121,6 +117,14 @@ impl Slab {
             balance: measure(&with_down(&|s, down| s.up + (1.0 - a) * (down + direct) + s.absorbed)),
         }
     }
+}
+
+/// Walks that bring an error `excess` times too large after the first round, of so many `steps` a walk, where it should be.
+fn count(excess: f64, steps: f64) -> u64 {
+    // The errors of this round and of the result are themselves uncertain by 9 % each, and a round that has missed the
+    // rare walks by more: with 1.25 in the place of 1.6 one result in fifty was not good enough.
+    let wanted = PILOT_WALKS as f64 * (1.6 * excess).powi(2).max(1.0);
+    wanted.min(MOST_STEPS / steps.max(1.0)).max(1.0) as u64
 }
 
 /// The cosine to the vertical after scattering by an angle with the cosine `cos_theta`, at azimuth 2π`u`.
