@@ -109,7 +109,8 @@ fn main() {
                 let (rms, energy, pixels, noisy) = score(case, &rendered.frame, 0.5..1.1);
                 let (thin, ..) = score(case, &rendered.frame, 0.03..0.3);
                 let flip = compare(&rendered.frame, &case.truth).map_or(f64::NAN, |comparison| comparison.mean_flip);
-                let times = rendered.timings.milliseconds.iter().filter(|(name, _)| name.starts_with("cloud"));
+                let of_clouds = |name: &str| name.starts_with("cloud") || name.starts_with("ordinates");
+                let times = rendered.timings.milliseconds.iter().filter(|(name, _)| of_clouds(name));
                 let milliseconds: f64 = times.map(|(_, time)| time).sum();
                 println!(
                     "| {} | {quality} | {scattering:?} | {rms:.2} | {energy:.2} | {pixels} + {noisy} | {thin:.2} | {flip:.3} | {milliseconds:.0} |",

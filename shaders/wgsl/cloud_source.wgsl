@@ -6,7 +6,8 @@
 //            scattering has one with a = 1, octaves and bands several: only the numbers differ
 //   nu       cosine of the angle between view direction and light
 //
-// Definitions: CLOUD_NEAR_SAMPLES, looked at between a sample and where the grid of depths takes over; CLOUD_TERM_COUNT; CLOUD_ORDINATES (light scattered many times is on the grids).
+// Definitions: CLOUD_NEAR_SAMPLES, looked at between a sample and where the grid of depths takes over; CLOUD_TERM_COUNT; CLOUD_ORDINATES (light scattered many times is
+// solved for), of the light ORDINATES_LIGHT.
 
 #import welkin::atmosphere::{atmosphere, lobe_per_sr, PhaseLobe}
 #import welkin::cloud_field::{cloud_layers, layer_density, CLOUD_LAYER_COUNT, CLOUD_LAYER_SLOTS}
@@ -14,11 +15,15 @@
 #import welkin::cloud_matter::{cloud_matter, CloudMatter}
 #import welkin::geometry::horizon_mu
 #import welkin::observer::{observer, LIGHT_COUNT}
+#import welkin::ordinates_light::scattered_light
 #import welkin::sky::multiple_scattering_table
 #import welkin::tables::{mean_field, optical_depth_to_top, table_sampler}
 
 const TERM_COUNT: u32 = #{CLOUD_TERM_COUNT}u;
 const TERM_LOBES: u32 = 4u;
+#ifdef CLOUD_ORDINATES
+const ORDINATES_LIGHT: u32 = #{ORDINATES_LIGHT}u;
+#endif
 
 struct CloudTerm {
     // a_k.
@@ -34,10 +39,6 @@ struct CloudTerm {
 @group(1) @binding(7) var<storage, read> cloud_terms: array<CloudTerm>;
 // Optical depths to each light, to the layer's top and to its base.
 @group(1) @binding(9) var cloud_light_image: texture_3d<f32>;
-#ifdef CLOUD_ORDINATES
-// Radiance scattered many times, per unit irradiance: its mean, and its flow.
-@group(1) @binding(12) var cloud_moments_image: texture_3d<f32>;
-#endif
 
 const PHASE_COUNT: u32 = CLOUD_LAYER_SLOTS * LIGHT_COUNT * TERM_COUNT;
 
@@ -108,16 +109,11 @@ fn surroundings(altitude_m: f32, mu_s: f32, irradiance: vec3<f32>) -> Surroundin
     return around;
 }
 
-// Radiance of light scattered many times along a step, per unit irradiance.
-fn diffuse(sample: Sample, matter: CloudMatter, part: Part, view: vec3<f32>) -> f32 {
-#ifdef CLOUD_ORDINATES
-    let moments = grid_sample(cloud_moments_image, table_sampler, part, sample.layer, sample.map, sample.height);
-    // Light that is seen along the view runs against it.
-    let toward = moments.x - matter.asymmetry * dot(vec3<f32>(view.xy, dot(view, sample.up)), moments.yzw);
-    return max(toward, 0.0) * matter.similarity * seen(sample, matter.similarity);
-#else
-    return 0.0;
-#endif
+// Light of the air behind the step that droplets scatter by small angles only, as a share: e^(-q tau) - e^(-tau).
+fn nearly_straight(sample: Sample, matter: CloudMatter) -> f32 {
+    let before = exp(-matter.similarity * sample.before) - exp(-sample.before);
+    let after = sample.before + sample.step;
+    return exp(-matter.similarity * after) - exp(-after) - before;
 }
 
 const NEAR_SAMPLES: u32 = #{CLOUD_NEAR_SAMPLES}u;
@@ -172,10 +168,12 @@ fn step_radiance(
 ) -> vec3<f32> {
     let matter = cloud_matter[sample.layer];
     var radiance = vec3<f32>(0.0);
+#ifdef CLOUD_ORDINATES
+    let local_view = vec3<f32>(view.xy, dot(view, sample.up));
+    let solved = scattered_light(vec3<f32>(sample.map, sample.altitude_m), local_view, table_sampler);
+#endif
     for (var light = 0u; light < LIGHT_COUNT; light++) {
         let mu_s = dot(sample.up, observer.lights[light].direction);
-        let part = Part(light, LIGHT_COUNT);
-        let depths = grid_sample(cloud_light_image, table_sampler, part, sample.layer, sample.map, sample.height);
         let to_light = depth_to_light(sample, light);
         var directional = 0.0;
         for (var k = 0u; k < TERM_COUNT; k++) {
@@ -183,12 +181,23 @@ fn step_radiance(
             let p = (*phase)[(sample.layer * LIGHT_COUNT + light) * TERM_COUNT + k];
             directional += p * exp(-a * to_light) * seen(sample, a);
         }
-        directional += diffuse(sample, matter, part, view);
-        radiance += directional * light_in_air(light, sample.altitude_m, mu_s);
         let around = surroundings(sample.altitude_m, mu_s, observer.lights[light].irradiance);
+#ifdef CLOUD_ORDINATES
+        let weight = matter.similarity * seen(sample, matter.similarity);
+        if light == ORDINATES_LIGHT {
+            directional += weight * solved.x;
+        }
+        radiance += weight * solved.y * around.above;
+        radiance += nearly_straight(sample, matter) * select(around.below, around.above, dot(view, sample.up) > 0.0);
+#else
+        let depths = grid_sample(
+            cloud_light_image, table_sampler, Part(light, LIGHT_COUNT), sample.layer, sample.map, sample.height
+        );
         // Diffuse light through a layer of conservative scatterers, by two streams: 1 / (1 + 3/4 (1 - g) tau).
         let through = 1.0 / (1.0 + 0.75 * matter.backward * depths.yz);
         radiance += 0.5 * seen(sample, 1.0) * (around.above * through.x + around.below * through.y);
+#endif
+        radiance += directional * light_in_air(light, sample.altitude_m, mu_s);
     }
     return matter.albedo * radiance;
 }

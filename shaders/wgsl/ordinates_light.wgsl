@@ -1,7 +1,7 @@
 #define_import_path welkin::ordinates_light
 // The light that the passes `ordinates_*` have found in clouds, for view rays.
 //
-//   let light = scattered_light(place_m, view);
+//   let light = scattered_light(place_m, view, linear_sampler);
 //   radiance += (light.x * sun_irradiance + light.y * sky_radiance) * albedo * q * int c e^(-q tau) ds
 //
 // with q = 1 - f of the droplets, c the true extinction and tau the true optical depth along the view so far. The sun's
@@ -16,25 +16,24 @@
 
 @group(2) @binding(1) var ordinates_sunlight: texture_3d<f32>;
 @group(2) @binding(2) var ordinates_skylight: texture_3d<f32>;
-@group(2) @binding(3) var ordinates_sampler: sampler;
 
 // Share of a level's half width within which it counts alone; outside it gives way to the next.
 const INNER: f32 = 0.85;
 
 // b' / c' (I0 - g' view . I1) of sun and sky, not negative. Light travels along the directions of I1, views against it.
-fn scattered_from(level: u32, place_m: vec3<f32>, view: vec3<f32>) -> vec2<f32> {
+fn scattered_from(level: u32, place_m: vec3<f32>, view: vec3<f32>, linear: sampler) -> vec2<f32> {
     let at = coordinates(place_m, level, vec3<f32>(textureDimensions(ordinates_sunlight)), 1.0);
-    let sun = textureSampleLevel(ordinates_sunlight, ordinates_sampler, at, 0.0);
-    let sky = textureSampleLevel(ordinates_skylight, ordinates_sampler, at, 0.0);
+    let sun = textureSampleLevel(ordinates_sunlight, linear, at, 0.0);
+    let sky = textureSampleLevel(ordinates_skylight, linear, at, 0.0);
     let along = vec2<f32>(dot(view, sun.xyz), dot(view, sky.xyz));
     return max(vec2<f32>(sun.w, sky.w) - ordinates.reduced_cosine * along, vec2<f32>(0.0));
 }
 
 // Light of the sun per unit irradiance (1/sr) and of a sky of radiance 1 that the similar medium scatters into a view
 // ray, per unit of its scattering. Beyond the outermost level that level's edge is repeated.
-fn scattered_light(place_m: vec3<f32>, view: vec3<f32>) -> vec2<f32> {
+fn scattered_light(place_m: vec3<f32>, view: vec3<f32>, linear: sampler) -> vec2<f32> {
     let level = min(level_of(place_m), LEVEL_COUNT - 1u);
-    let light = scattered_from(level, place_m, view);
+    let light = scattered_from(level, place_m, view, linear);
     let box = ordinates.levels[level];
     let half_m = 0.5 * vec2<f32>(box.size.xy) * box.cell_m.xy;
     let from_middle = abs(place_m.xy - box.lowest_m.xy - half_m) / half_m;
@@ -42,5 +41,5 @@ fn scattered_light(place_m: vec3<f32>, view: vec3<f32>) -> vec2<f32> {
     if outward <= 0.0 || level + 1u == LEVEL_COUNT {
         return light;
     }
-    return mix(light, scattered_from(level + 1u, place_m, view), outward);
+    return mix(light, scattered_from(level + 1u, place_m, view, linear), outward);
 }

@@ -19,7 +19,7 @@ pub const PASS: Pass = Pass {
             "cloud_shape_bounds",
             "cloud_weather_bounds",
             "cloud_light_image",
-            "cloud_moments_image",
+            "ordinates_sunlight",
             "optical_depth_table",
             "multiple_scattering_table",
         ],

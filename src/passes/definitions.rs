@@ -4,6 +4,7 @@ use welkin_lut::cloud::CloudKind;
 use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count};
+use super::ordinates;
 use crate::plan::{Facts, Treatment};
 use crate::probe::Orders;
 
@@ -52,7 +53,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
     let cloud_numbers = [
         ("CLOUD_LAYER_COUNT", facts.clouds.len() as u32),
         ("CLOUD_TERM_COUNT", cloud_term_count(facts)),
-        ("CLOUD_GROUPS", facts.cloud_scattering().ordinate_groups()),
+        ("ORDINATES_LIGHT", ordinates::light(facts) as u32),
         ("CLOUD_NEAR_SAMPLES", clouds.near_samples),
         ("CLOUD_STEP_M", clouds.step_m),
         ("CLOUD_STEP_PERMILLE", clouds.step_permille),
@@ -80,5 +81,6 @@ pub fn definitions(facts: &Facts) -> Definitions {
     let numbers = numbers.into_iter().chain(cloud_numbers);
     let numbers = numbers.map(|(name, value)| (name.to_owned(), Definition::U32(value)));
     let flags = flags.map(|(name, value)| (name.to_owned(), Definition::Bool(value)));
-    numbers.chain(flags).collect()
+    let ordinates = ordinates::problem(facts).map(|problem| problem.definitions());
+    numbers.chain(flags).chain(ordinates.into_iter().flatten()).collect()
 }

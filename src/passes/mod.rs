@@ -10,7 +10,6 @@ mod cloud_bounds;
 mod cloud_density;
 mod cloud_erosion;
 mod cloud_light;
-mod cloud_ordinates;
 mod cloud_shape;
 mod cloud_weather;
 mod clouds;
@@ -72,14 +71,15 @@ pub const TABLES: [Pass; 12] = [
 ];
 
 /// Clouds: their noise, their light, and what each pixel sees of them, in order.
-pub const CLOUDS: [Pass; 8] = [
+pub const CLOUDS: [Pass; 9] = [
     cloud_shape::PASS,
     cloud_erosion::PASS,
     cloud_weather::PASS,
     cloud_bounds::PASS,
     cloud_density::PASS,
     cloud_light::PASS,
-    cloud_ordinates::PASS,
+    ordinates::EXTINCTION,
+    ordinates::LIGHT,
     clouds::PASS,
 ];
 

@@ -8,7 +8,7 @@ use super::blocks::{
     CameraBlock, ZONAL_COUNT, atmosphere_block, cloud_layers, cloud_matter, cloud_terms, cosine_nodes, emission_block,
     gauss_nodes, grid_nodes, height_field_block, legendre_moments, observer_block,
 };
-use super::{RenderError, Resources, definitions};
+use super::{RenderError, Resources, definitions, ordinates};
 use crate::gpu::{Commands, GpuImage, Resource, Work};
 use crate::plan::Facts;
 
@@ -64,6 +64,9 @@ impl<'a> Recording<'a> {
         if let Some(terrain) = facts.scene.terrain.as_ref() {
             resources.fill_buffer("height_field", &height_field_block(terrain))?;
         }
+        if let Some(problem) = ordinates::problem(facts) {
+            resources.fill_buffer("ordinates", &problem.block())?;
+        }
         let commands = resources.gpu.record_timed(label)?;
         Ok(Self { facts, resources, parameters: Parameters::new(facts), definitions: definitions(facts), commands })
     }
@@ -86,6 +89,11 @@ impl<'a> Recording<'a> {
         let mut definitions = self.definitions.clone();
         definitions.extend(flags.iter().map(|flag| ((*flag).to_owned(), Definition::Bool(true))));
         dispatch(self.resources, &mut self.commands, pass, definitions, &self.parameters, images, work)
+    }
+
+    /// What dispatches are recorded with, for passes that bring their own parameters.
+    pub(super) fn parts(&mut self) -> (&mut Resources, &mut Commands) {
+        (self.resources, &mut self.commands)
     }
 
     /// Runs what was recorded.

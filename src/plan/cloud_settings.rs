@@ -39,8 +39,12 @@ impl CloudScattering {
 pub struct CloudSettings {
     /// Multiple scattering.
     pub scattering: CloudScattering,
-    /// Sweeps of the ordinates through the grids.
+    /// Sweeps of the ordinates through each level of their grid.
     pub sweeps: u32,
+    /// Width of the ordinates' smallest cells, m.
+    pub ordinate_cell_m: u32,
+    /// Cells across each level of the ordinates' grid; even.
+    pub ordinate_cells: u32,
     /// Points between a sample and where the grid of optical depths takes over.
     pub near_samples: u32,
     /// Shortest step along a ray, m.
@@ -64,7 +68,9 @@ impl CloudSettings {
     pub fn of(quality: Quality) -> Self {
         let medium = Self {
             scattering: CloudScattering::Ordinates8,
-            sweeps: 32,
+            sweeps: 24,
+            ordinate_cell_m: 120,
+            ordinate_cells: 64,
             near_samples: 4,
             step_m: 15,
             step_permille: 5,
@@ -89,7 +95,7 @@ impl CloudSettings {
             Quality::Medium => medium,
             Quality::High => Self {
                 scattering: CloudScattering::Ordinates16,
-                sweeps: 48,
+                sweeps: 32,
                 step_m: 10,
                 step_permille: 3,
                 max_steps: 640,
@@ -98,7 +104,8 @@ impl CloudSettings {
             },
             Quality::Ultra => Self {
                 scattering: CloudScattering::Ordinates16,
-                sweeps: 96,
+                sweeps: 48,
+                ordinate_cell_m: 60,
                 step_m: 5,
                 step_permille: 2,
                 max_steps: 1280,

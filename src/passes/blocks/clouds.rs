@@ -3,10 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use welkin_lut::PhaseFunction;
 use welkin_lut::cloud::{CloudLayer, CloudParameters};
-use welkin_lut::phase::DropletFit;
 
 use super::atmosphere::{PhaseLobeBlock, scaled_lobes};
 use super::vec3;
+use crate::passes::ordinates::coefficients::{BAND_ASYMMETRY, band_attenuations};
 use crate::plan::{CloudScattering, Facts};
 
 /// Lobes that a term has room for: WGSL `TERM_LOBES`.
@@ -59,31 +59,13 @@ fn terms_of(phase: &PhaseFunction, scattering: CloudScattering) -> Vec<CloudTerm
     }
 }
 
-/// Light that has been scattered little and almost straight ahead, as two bands of blur: what each lets through follows
-/// from how much of the forward lobes has turned by then, 1 - Σ w g^l with l fitted to path-traced clouds.
+/// The two bands of near-forward light that the ordinates leave out.
 fn bands(phase: &PhaseFunction) -> Vec<CloudTermBlock> {
-    const BLUR: f64 = 0.6;
-    let attenuation =
-        |degree: f64| 1.0 - forward_lobes(phase).into_iter().map(|(weight, g)| weight * g.powf(degree)).sum::<f64>();
+    let [sharp, wide] = band_attenuations(phase, 1.0);
     vec![
-        CloudTermBlock::new(attenuation(9.9), phase, &[(1.0, 1.0), (-1.0, BLUR)]),
-        CloudTermBlock::new(attenuation(2.65), phase, &[(1.0, BLUR)]),
+        CloudTermBlock::new(sharp, phase, &[(1.0, 1.0), (-1.0, BAND_ASYMMETRY)]),
+        CloudTermBlock::new(wide, phase, &[(1.0, BAND_ASYMMETRY)]),
     ]
-}
-
-/// Shares and mean cosines of a phase function's forward lobes.
-fn forward_lobes(phase: &PhaseFunction) -> Vec<(f64, f64)> {
-    let lobes = match *phase {
-        PhaseFunction::DoubleHenyeyGreenstein { weight, g1, g2 } => vec![(weight, g1), (1.0 - weight, g2)],
-        PhaseFunction::HenyeyGreensteinDraine { droplet_diameter_um } => {
-            let fit = DropletFit::new(droplet_diameter_um);
-            let narrow = 1.0 - fit.weight_draine;
-            let wide_cosine = (phase.mean_cosine() - narrow * fit.g_hg) / fit.weight_draine;
-            vec![(narrow, fit.g_hg), (fit.weight_draine, wide_cosine)]
-        }
-        _ => vec![(1.0, phase.mean_cosine())],
-    };
-    lobes.into_iter().filter(|(_, g)| *g > 0.0).collect()
 }
 
 /// Terms of each layer.

@@ -15,7 +15,7 @@ pub const BAND_ASYMMETRY: f64 = 0.6;
 
 /// Degrees l at which 1 - W χ_l is the share of the optical depth that dims a band: what leaves the field's component of
 /// that degree with each scattering.
-const BAND_DEGREES: [f64; 2] = [9.9, 2.65];
+const BAND_DEGREES: [f64; 2] = [9.9, 2.9];
 
 /// Shares a_k of the optical depths that dim the two bands, for a single-scattering albedo W in [0, 1].
 pub fn band_attenuations(phase: &PhaseFunction, albedo: f64) -> [f64; 2] {

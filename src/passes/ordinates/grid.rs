@@ -35,6 +35,9 @@ pub struct Grid {
     pub refinement: u32,
 }
 
+/// Rows of cells in a level at most: the cells of deep clouds are higher than they are wide.
+const MOST_ROWS: f64 = 48.0;
+
 /// What nested boxes around a camera are to cover, and how finely.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coverage {
@@ -60,7 +63,7 @@ impl Grid {
         let mut levels = Vec::new();
         let mut edge_m = coverage.cell_m;
         loop {
-            let rows = (thickness_m / edge_m).ceil().max(1.0);
+            let rows = (thickness_m / edge_m).ceil().clamp(1.0, MOST_ROWS);
             let snapped = |centre_m: f64| ((centre_m / edge_m / 2.0).round() * 2.0 - f64::from(across / 2)) * edge_m;
             levels.push(Level {
                 lowest_m: DVec3::new(snapped(east_m), snapped(north_m), lowest_m),

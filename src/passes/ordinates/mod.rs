@@ -3,7 +3,7 @@
 //! Passes in a row, each for every level of a [`Grid`]:
 //!
 //! ```text
-//!                      -> ordinates_extinction   c' of fine texels, which the caller fills
+//! ordinates_extinction -> ordinates_extinction   c' of fine texels: of the scene's clouds, or the caller fills it
 //! ordinates_depth      -> ordinates_depth        optical depth towards the sun
 //! ordinates_source     -> ordinates_source       mean c' and first scattered sunlight of cells
 //! ordinates_sweep      -> ordinates_radiance     radiance by direction and cell, relaxed in place
@@ -15,9 +15,13 @@
 
 pub mod coefficients;
 mod grid;
+mod passes;
 mod problem;
+mod scene;
 mod volumes;
 
 pub use grid::{Coverage, Grid, Level, Sides};
+pub use passes::{EXTINCTION, LIGHT};
 pub use problem::{Directions, Problem};
+pub use scene::{light, problem};
 pub use volumes::{Start, Volumes};

@@ -28,8 +28,17 @@ pub struct Volumes<'a> {
 impl<'a> Volumes<'a> {
     /// Fills the parameters and makes what the passes write to. Nothing may be being recorded.
     pub fn prepare(problem: &'a Problem, resources: &mut Resources) -> Result<Self, RenderError> {
-        let grid = &problem.grid;
         resources.fill_buffer("ordinates", &problem.block())?;
+        Self::allocate(problem, problem.definitions(), resources)
+    }
+
+    /// Makes what the passes write to; parameters are filled, and among the definitions are the problem's.
+    pub(super) fn allocate(
+        problem: &'a Problem,
+        definitions: Definitions,
+        resources: &mut Resources,
+    ) -> Result<Self, RenderError> {
+        let grid = &problem.grid;
         let [fine, cells] = [grid.fine_texture(), grid.cell_texture()].map(|[x, y, z]| ImageShape::D3(x, y, z));
         resources.image("ordinates_extinction", fine, ImageFormat::R32Float)?;
         resources.image("ordinates_depth", fine, ImageFormat::R32Float)?;
@@ -37,7 +46,7 @@ impl<'a> Volumes<'a> {
         resources.image("ordinates_sunlight", cells, ImageFormat::Rgba16Float)?;
         resources.image("ordinates_skylight", cells, ImageFormat::Rgba16Float)?;
         resources.buffer("ordinates_radiance", radiance_bytes(problem))?;
-        Ok(Self { problem, definitions: problem.definitions() })
+        Ok(Self { problem, definitions })
     }
 
     /// Bytes of all that the passes write to.
@@ -48,6 +57,15 @@ impl<'a> Volumes<'a> {
         texels(problem.grid.fine_texture()) * fine
             + texels(problem.grid.cell_texture()) * cell
             + radiance_bytes(problem)
+    }
+
+    /// Extinction of the scene's clouds.
+    pub(super) fn record_extinction(
+        &self,
+        resources: &mut Resources,
+        commands: &mut Commands,
+    ) -> Result<(), RenderError> {
+        self.each_level("ordinates_extinction", self.problem.grid.refinement, resources, commands)
     }
 
     /// Optical depth towards the sun of the extinction that lies in `ordinates_extinction`.
