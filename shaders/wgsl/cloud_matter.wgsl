@@ -8,11 +8,9 @@ struct CloudMatter {
     backward: f32,
     // 1 - f, f the second Legendre moment: the share of extinction that turns light away from its line.
     similarity: f32,
-    // (g - f) / (1 - f), the mean cosine of what is left.
-    asymmetry: f32,
-    // Albedo of what is left, the bands' mean.
-    scaled_albedo: f32,
-    padding: f32,
+    padding_a: f32,
+    padding_b: f32,
+    padding_c: f32,
 }
 
 @group(1) @binding(8) var<storage, read> cloud_matter: array<CloudMatter>;

@@ -28,9 +28,7 @@ pub struct CloudMatterBlock {
     pub(super) albedo: [f32; 3],
     pub(super) backward: f32,
     pub(super) similarity: f32,
-    pub(super) asymmetry: f32,
-    pub(super) scaled_albedo: f32,
-    pub(super) padding: f32,
+    pub(super) padding: [f32; 3],
 }
 
 impl CloudTermBlock {
@@ -79,18 +77,10 @@ pub fn cloud_terms(facts: &Facts) -> Vec<CloudTermBlock> {
 }
 
 impl CloudMatterBlock {
-    /// The similarity of delta-Eddington (Joseph, Wiscombe & Weinman 1976): light in the forward peak is not scattered.
     fn new(layer: &CloudLayer) -> Self {
         let [g, f] = [1, 2].map(|degree| layer.phase.legendre_moment(degree));
-        let albedo = layer.albedo.iter().sum::<f64>() / layer.albedo.len() as f64;
-        Self {
-            albedo: vec3(layer.albedo),
-            backward: (1.0 - g) as f32,
-            similarity: (1.0 - f) as f32,
-            asymmetry: ((g - f) / (1.0 - f)) as f32,
-            scaled_albedo: (albedo * (1.0 - f) / (1.0 - albedo * f)) as f32,
-            padding: 0.0,
-        }
+        let (albedo, backward, similarity) = (vec3(layer.albedo), (1.0 - g) as f32, (1.0 - f) as f32);
+        Self { albedo, backward, similarity, padding: [0.0; 3] }
     }
 }
 

@@ -103,12 +103,7 @@ mod tests {
         let clouds = shader("clouds");
         assert_layout!(clouds, "CloudTerm", CloudTermBlock, [attenuation, lobes]);
         assert_eq!(size(&clouds, "CloudTerm"), size_of::<CloudTermBlock>());
-        assert_layout!(
-            clouds,
-            "CloudMatter",
-            CloudMatterBlock,
-            [albedo, backward, similarity, asymmetry, scaled_albedo]
-        );
+        assert_layout!(clouds, "CloudMatter", CloudMatterBlock, [albedo, backward, similarity]);
         assert_eq!(size(&clouds, "CloudMatter"), size_of::<CloudMatterBlock>());
         assert_layout!(
             clouds,
