@@ -4,7 +4,7 @@
 //! clouds that were not fitted.
 //!
 //! Light that was scattered by small angles only is taken for bands of sunlight that less than the whole optical depth
-//! dims and that scatters once: E Σ P_k(ν) ∫ c e^(-a_k (τ_sun + τ_view)) ds with P_0 = P[g] - P[0.6 g], the peak, and
+//! dims and that scatters once: E Σ P_k(ν) ∫ c e^(-a_k (τ_sun + τ_view)) ds with P_0 = P\[g\] - P\[0.6 g\], the peak, and
 //! P_1 = P[0.6 g], where P[0.6 g] is the phase function with every asymmetry parameter scaled. All other light is the
 //! field's.
 

@@ -143,7 +143,7 @@ impl<'a> Seen<'a> {
             let tilted = 1.0 - self.kappa() * mu;
             let leaves = if mu > 0.0 { (-tilted * length).exp() } else { 0.0 };
             let sent_back = walk.weight * leaves * slab.surface_albedo;
-            score += sent_back * self.from_surface();
+            score += sent_back * self.sent_by_surface();
             // Go on with one of the two that stay in play, with the importance of both.
             let importance = self.after_scattering(mu);
             let collides = walk.weight * slab.albedo * deep::reach(tilted, length) * importance;
@@ -159,7 +159,7 @@ impl<'a> Seen<'a> {
                 walk.depth = (walk.depth + flight * mu).clamp(0.0, slab.optical_thickness);
                 walk.weight = both * survives / importance;
                 if !is_first {
-                    score += walk.weight * self.from_collision(&walk);
+                    score += walk.weight * self.sent_by_collision(&walk);
                 }
                 self.turn(&mut walk, draw);
             } else {
@@ -173,7 +173,7 @@ impl<'a> Seen<'a> {
     }
 
     /// What a collision sends to the observer, per unit of its weight, in the units of the score.
-    fn from_collision(&self, walk: &Walk) -> f64 {
+    fn sent_by_collision(&self, walk: &Walk) -> f64 {
         let Exit { side, mu, .. } = self.exit;
         let left = self.slab.optical_thickness - walk.depth;
         let exponent = match side {
@@ -184,7 +184,7 @@ impl<'a> Seen<'a> {
     }
 
     /// The same of light that the surface reflects.
-    fn from_surface(&self) -> f64 {
+    fn sent_by_surface(&self) -> f64 {
         match self.exit.side {
             Side::Top => (-self.slab.optical_thickness / self.exit.mu).exp() / PI,
             Side::Bottom => 0.0,
