@@ -111,7 +111,7 @@ fn spaces_are_one_matrix_apart_and_stay_so_when_only_the_sun_moves() {
         let acescg = render(&mut renderer, &scene_of(&text, 6, Channels::Colour(ColourSpace::AcesCg)));
         let decision = |name| acescg.timings.plan.decision(name);
         // The tables of both groups are kept; what is seen is added up anew.
-        assert_eq!((decision("higher_order"), decision("colour")), (Some(Decision::Reuse), Some(Decision::Run)));
+        assert_eq!((decision("higher_source"), decision("colour")), (Some(Decision::Reuse), Some(Decision::Run)));
         assert_eq!(acescg.frame.channels, Some(Channels::Colour(ColourSpace::AcesCg)));
         let apart = |matrix: DMat3, frame: &Frame| {
             let difference =
