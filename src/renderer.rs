@@ -1,16 +1,19 @@
 //! Runs a plan on a device: no physics, no Vulkan.
 
 mod spectral;
+mod targets;
 
 use std::collections::BTreeMap;
 
 use crate::foreground::Foreground;
 use crate::frame::Frame;
-use crate::gpu::{Clock, DeviceRequest, Gpu};
+use crate::gpu::{Clock, DeviceRequest, Gpu, Pace};
 use crate::passes::{self, CLOUDS, FRAME, Pass, Recording, RenderError, Resources, TABLES, record_probe};
 use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Settings, Surface};
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Camera, Light, Scene};
+
+pub use targets::Targets;
 
 /// Renders scenes on one device; what one frame has computed, the next reuses.
 pub struct Renderer {
@@ -69,8 +72,16 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Gpu`] when there is none that can be used; [`RenderError::NoLinearFilter`].
     pub fn new(request: &DeviceRequest) -> Result<Self, RenderError> {
+        Self::on(Gpu::new(request)?)
+    }
+
+    /// Renders on a device that is open already, and that others may use as well.
+    ///
+    /// # Errors
+    /// [`RenderError::NoLinearFilter`].
+    pub fn on(gpu: Gpu) -> Result<Self, RenderError> {
         Ok(Self {
-            resources: Resources::new(Gpu::new(request)?)?,
+            resources: Resources::new(gpu)?,
             history: History::default(),
             histories: Vec::new(),
             group: 0,
@@ -81,6 +92,12 @@ impl Renderer {
     /// The device.
     pub fn gpu(&self) -> &Gpu {
         &self.resources.gpu
+    }
+
+    /// From now on frames come in submissions short enough for others who share the device, and can be stopped. A
+    /// stopped frame ends in [`crate::gpu::GpuError::Stopped`]; the next one computes what it has left undone.
+    pub fn set_pace(&mut self, pace: Option<Pace>) {
+        self.resources.pace = pace;
     }
 
     /// Renders what the scene's camera sees.
@@ -163,6 +180,7 @@ impl Renderer {
         let declarations: Vec<_> = passes.iter().map(|pass| pass.declaration).collect();
         let plan = Plan::new(facts, &self.history, &declarations);
         self.release_what_nobody_writes(&plan, passes);
+        self.history.begin(&plan);
         let mut recording = Recording::new(label, facts, &mut self.resources)?;
         for pass in passes.iter().filter(|pass| plan.decision(pass.declaration.name) == Some(Decision::Run)) {
             (pass.record)(&mut recording)?;
@@ -170,6 +188,7 @@ impl Renderer {
         if rays > 0 {
             record_probe(&mut recording, rays)?;
         }
+        recording.leave_targets();
         let completed = recording.finish()?;
         self.history.record(&plan);
         let mut milliseconds = BTreeMap::new();

@@ -26,6 +26,11 @@ impl Use {
         Self { stage: Stage::COPY, reads: Access::NONE, writes: Access::TRANSFER_WRITE, layout }
     }
 
+    /// Whatever comes next and does not write: another submission, of the host's own.
+    pub(crate) const fn read_by_others(layout: Layout) -> Self {
+        Self { stage: Stage::ALL_COMMANDS, reads: Access::MEMORY_READ, writes: Access::NONE, layout }
+    }
+
     pub(crate) fn is_write(&self) -> bool {
         !self.writes.is_empty()
     }

@@ -154,6 +154,9 @@ pub enum GpuError {
         /// The label of the open recording.
         open: String,
     },
+    /// A paced recording was told to stop.
+    #[error("`{0}` was stopped before it was done")]
+    Stopped(String),
     /// The device's queue has no timestamps.
     #[error("{device} has no timestamps; use the host's clock")]
     NoTimestamps {
@@ -173,6 +176,11 @@ pub enum GpuError {
 }
 
 impl GpuError {
+    /// Whether nothing went wrong but that [`super::Pace::stop`] was called.
+    pub fn is_stopped(&self) -> bool {
+        matches!(self, Self::Stopped(_))
+    }
+
     /// Whether the cause is that this machine has no Vulkan device that can be used, so that a program can tell it
     /// from other failures.
     pub fn is_no_usable_device(&self) -> bool {

@@ -74,6 +74,24 @@ impl ImageShape {
     }
 }
 
+/// What those outside of a recording do next with an image that it has written; the image is left in the layout for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NextUse {
+    /// Shaders sample it: `VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL`.
+    Sample,
+    /// It is copied or blitted from: `VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL`.
+    Copy,
+}
+
+impl NextUse {
+    pub(crate) const fn layout(self) -> vk::ImageLayout {
+        match self {
+            Self::Sample => vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+            Self::Copy => vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+        }
+    }
+}
+
 /// An image that shaders can sample and store to. Clones are the same image.
 #[derive(Clone)]
 pub struct GpuImage(pub(crate) Arc<ImageInner>);

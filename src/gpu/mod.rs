@@ -14,6 +14,7 @@ mod error;
 mod format;
 mod image;
 mod instance;
+mod pace;
 mod pipeline;
 mod pipeline_cache;
 mod recorder;
@@ -32,7 +33,8 @@ pub use buffer::{BufferKind, GpuBuffer};
 pub use device::{DeviceInfo, DeviceKind, DeviceRequest, Limits};
 pub use error::GpuError;
 pub use format::{Filtering, ImageFormat};
-pub use image::{GpuImage, ImageShape};
+pub use image::{GpuImage, ImageShape, NextUse};
+pub use pace::Pace;
 pub use pipeline::{MAX_UNIFORM_BUFFERS, Pipeline};
 pub use recorder::{Commands, Completed, Work};
 pub use resource::Resource;
@@ -146,7 +148,7 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::Recording`] when another list is open.
     pub fn record(&self, label: &str) -> Result<Commands, GpuError> {
-        Commands::new(&self.0, label, None)
+        Commands::new(&self.0, label, None, None)
     }
 
     /// As [`Gpu::record`], and each dispatch's time is taken with the best clock ([`Clock::of`]).
@@ -166,7 +168,15 @@ impl Gpu {
         if clock == Clock::Timestamps && Clock::of(self.info()) != clock {
             return Err(GpuError::NoTimestamps { device: self.info().name.clone() });
         }
-        Commands::new(&self.0, label, Some(clock))
+        Commands::new(&self.0, label, Some(clock), None)
+    }
+
+    /// As [`Gpu::record_timed`], in pieces short enough that others who share the queue hardly wait: see [`Pace`].
+    ///
+    /// # Errors
+    /// As [`Gpu::record`].
+    pub fn record_paced(&self, label: &str, pace: &Pace) -> Result<Commands, GpuError> {
+        Commands::new(&self.0, label, Some(Clock::of(self.info())), Some(pace.clone()))
     }
 
     /// Fills an image with texels in rows from the first, then slices or layers.

@@ -131,7 +131,9 @@ fn compute_pipeline(context: &Context, shader: &Shader, layout: vk::PipelineLayo
     let module = unsafe { device.create_shader_module(&code, None) }.during("vkCreateShaderModule")?;
     let stage =
         vk::PipelineShaderStageCreateInfo::default().stage(vk::ShaderStageFlags::COMPUTE).module(module).name(&entry);
-    let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout);
+    // A dispatch may be run in pieces, each of which begins at another workgroup.
+    let flags = vk::PipelineCreateFlags::DISPATCH_BASE;
+    let info = vk::ComputePipelineCreateInfo::default().flags(flags).stage(stage).layout(layout);
     // SAFETY: module, entry point and layout are of the same pass. The driver guards the cache against other threads.
     let pipelines = unsafe { device.create_compute_pipelines(context.pipeline_cache.raw, &[info], None) };
     // SAFETY: a pipeline needs its module only while it is made.

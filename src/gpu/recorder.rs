@@ -12,7 +12,8 @@ use super::command_list::CommandList;
 use super::context::{Context, lock};
 use super::descriptors::Descriptors;
 use super::error::GpuError;
-use super::image::GpuImage;
+use super::image::{GpuImage, NextUse};
+use super::pace::{Pace, Piece};
 use super::pipeline::Pipeline;
 use super::resource::{self, Bound, Resource};
 use super::sampler::Sampler;
@@ -46,6 +47,10 @@ pub struct Commands {
     kept: Kept,
     timer: Timer,
     clock: Option<Clock>,
+    pace: Option<Pace>,
+    /// What a paced recording has not submitted yet.
+    piece: Piece,
+    label: String,
 }
 
 /// What the device uses until the list is done.
@@ -58,7 +63,12 @@ struct Kept {
 }
 
 impl Commands {
-    pub(crate) fn new(context: &Arc<Context>, label: &str, clock: Option<Clock>) -> Result<Self, GpuError> {
+    pub(crate) fn new(
+        context: &Arc<Context>,
+        label: &str,
+        clock: Option<Clock>,
+        pace: Option<Pace>,
+    ) -> Result<Self, GpuError> {
         let list = CommandList::new(context)?;
         context.open_recording(label)?;
         context.begin_label(list.raw, label);
@@ -70,6 +80,9 @@ impl Commands {
             kept: Kept::default(),
             timer: clock.map_or(Timer::Off, |clock| Timer::new(context, clock)),
             clock,
+            pace,
+            piece: Piece::default(),
+            label: label.to_owned(),
         })
     }
 
@@ -106,16 +119,80 @@ impl Commands {
         self.kept.data.extend(self.upload_data(&bound)?);
         let data = &self.kept.data[first_data..];
         let descriptors = Descriptors::new(&self.context, &pipeline.0, &bound, data)?;
-        self.context.begin_label(self.list.raw, label);
         self.barriers(&bound).record(&self.context.device, self.list.raw);
+        match self.pace.clone() {
+            None => self.record_portion(label, pipeline, descriptors.as_ref(), [0; 3], workgroups)?,
+            Some(pace) => self.record_in_pieces(&pace, label, pipeline, descriptors.as_ref(), workgroups)?,
+        }
+        self.kept.descriptors.extend(descriptors);
+        self.kept.pipelines.push(pipeline.clone());
+        Ok(())
+    }
+
+    /// Puts an image that the recording has written into the layout for what others do with it next.
+    pub fn leave_for(&mut self, image: &GpuImage, next: NextUse) {
+        let barrier =
+            self.state(Resource::Image(image)).and_then(|state| state.next(Use::read_by_others(next.layout())));
+        let mut barriers = Barriers::default();
+        if let Some(barrier) = barrier {
+            barriers.image(image.0.raw, barrier);
+        }
+        barriers.record(&self.context.device, self.list.raw);
+    }
+
+    /// Records a dispatch, and submits whenever a piece is full.
+    fn record_in_pieces(
+        &mut self,
+        pace: &Pace,
+        label: &str,
+        pipeline: &Pipeline,
+        descriptors: Option<&Descriptors>,
+        workgroups: [u32; 3],
+    ) -> Result<(), GpuError> {
+        let axis = (0..3).max_by_key(|&axis| workgroups[axis]).unwrap_or(0);
+        let row_workgroups = workgroups.iter().map(|&n| u64::from(n)).product::<u64>() / u64::from(workgroups[axis]);
+        let mut from = 0;
+        while from < workgroups[axis] {
+            let portion = pace.portion(label, &self.piece, workgroups[axis] - from, row_workgroups);
+            let (mut base, mut count) = ([0; 3], workgroups);
+            (base[axis], count[axis]) = (from, portion.rows);
+            self.record_portion(label, pipeline, descriptors, base, count)?;
+            self.piece.add(label, u64::from(portion.rows) * row_workgroups, portion.milliseconds);
+            from += portion.rows;
+            if portion.ends_piece {
+                self.finish_piece(pace)?;
+                self.restart()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs a piece and learns how long it took.
+    fn finish_piece(&mut self, pace: &Pace) -> Result<(), GpuError> {
+        if pace.is_stopped() {
+            return Err(GpuError::Stopped(self.label.clone()));
+        }
+        let started = Instant::now();
+        self.flush()?;
+        pace.learn(&std::mem::take(&mut self.piece), started.elapsed());
+        Ok(())
+    }
+
+    fn record_portion(
+        &mut self,
+        label: &str,
+        pipeline: &Pipeline,
+        descriptors: Option<&Descriptors>,
+        base: [u32; 3],
+        workgroups: [u32; 3],
+    ) -> Result<(), GpuError> {
+        self.context.begin_label(self.list.raw, label);
         self.begin_time(label)?;
-        self.record(pipeline, descriptors.as_ref(), workgroups);
+        self.record(pipeline, descriptors, base, workgroups);
         if let Timer::Timestamps(timestamps) = &mut self.timer {
             timestamps.end(self.list.raw);
         }
         self.context.end_label(self.list.raw);
-        self.kept.descriptors.extend(descriptors);
-        self.kept.pipelines.push(pipeline.clone());
         self.end_time(label)
     }
 
@@ -124,8 +201,10 @@ impl Commands {
     /// # Errors
     /// [`GpuError::Vulkan`] when the device fails.
     pub fn submit_and_wait(mut self) -> Result<Completed, GpuError> {
-        self.context.end_label(self.list.raw);
-        self.flush()?;
+        match self.pace.clone() {
+            None => self.flush()?,
+            Some(pace) => self.finish_piece(&pace)?,
+        }
         Ok(Completed { times: self.timer.times()?, clock: self.clock })
     }
 
@@ -204,18 +283,24 @@ impl Commands {
         barriers
     }
 
-    fn record(&self, pipeline: &Pipeline, descriptors: Option<&Descriptors>, [x, y, z]: [u32; 3]) {
+    fn record(
+        &self,
+        pipeline: &Pipeline,
+        descriptors: Option<&Descriptors>,
+        [base_x, base_y, base_z]: [u32; 3],
+        [x, y, z]: [u32; 3],
+    ) {
         let (device, commands) = (&self.context.device, self.list.raw);
         let bind_point = vk::PipelineBindPoint::COMPUTE;
         // SAFETY: the list is being recorded; pipeline, sets and resources are kept until it is done, and the sets
-        // were made for the pipeline's layout.
+        // were made for the pipeline's layout; pipelines are made to begin at any workgroup.
         unsafe {
             device.cmd_bind_pipeline(commands, bind_point, pipeline.0.raw);
             if let Some(descriptors) = descriptors {
                 let layout = pipeline.0.layout;
                 device.cmd_bind_descriptor_sets(commands, bind_point, layout, 0, &descriptors.sets, &[]);
             }
-            device.cmd_dispatch(commands, x, y, z);
+            device.cmd_dispatch_base(commands, base_x, base_y, base_z, x, y, z);
         }
     }
 
@@ -236,11 +321,20 @@ impl Commands {
             let milliseconds = started.elapsed().as_secs_f64() * 1e3;
             times.push(DispatchTime { label: label.to_owned(), milliseconds });
         }
-        self.list.restart()
+        self.restart()
+    }
+
+    /// An empty list under the same label, after [`Commands::flush`].
+    fn restart(&mut self) -> Result<(), GpuError> {
+        self.list.restart()?;
+        self.context.begin_label(self.list.raw, &self.label);
+        Ok(())
     }
 
     /// Runs the list and notes what it has done to its resources.
     fn flush(&mut self) -> Result<(), GpuError> {
+        // A label that is open across lists would be ended where it never began.
+        self.context.end_label(self.list.raw);
         self.list.submit_and_wait()?;
         for (image, state) in self.images.values() {
             *lock(&image.0.state) = *state;

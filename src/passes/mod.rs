@@ -112,6 +112,16 @@ pub enum RenderError {
     /// What is to stand before the camera cannot.
     #[error(transparent)]
     Foreground(#[from] ForegroundError),
+    /// An image of the host's is not what the frame is drawn into.
+    #[error("the target for {what} is a {found}; this scene's camera needs a {expected}")]
+    Target {
+        /// Radiance, transmittance, distance or picture.
+        what: &'static str,
+        /// Shape and format of the image.
+        found: String,
+        /// What they must be.
+        expected: String,
+    },
     /// The device cannot interpolate the tables.
     #[error(
         "device '{device}' cannot interpolate textures of 32-bit floats, which welkin's tables need; choose another with --device"

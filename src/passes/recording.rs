@@ -67,7 +67,10 @@ impl<'a> Recording<'a> {
         if let Some(problem) = ordinates::problem(facts) {
             resources.fill_buffer("ordinates", &problem.block())?;
         }
-        let commands = resources.gpu.record_timed(label)?;
+        let commands = match &resources.pace {
+            None => resources.gpu.record_timed(label)?,
+            Some(pace) => resources.gpu.record_paced(label, pace)?,
+        };
         Ok(Self { facts, resources, parameters: Parameters::new(facts), definitions: definitions(facts), commands })
     }
 
@@ -94,6 +97,13 @@ impl<'a> Recording<'a> {
     /// What dispatches are recorded with, for passes that bring their own parameters.
     pub(super) fn parts(&mut self) -> (&mut Resources, &mut Commands) {
         (self.resources, &mut self.commands)
+    }
+
+    /// Puts images of the host's into the layout that it wants them in.
+    pub fn leave_targets(&mut self) {
+        for (_, image, next) in &self.resources.targets {
+            self.commands.leave_for(image, *next);
+        }
     }
 
     /// Runs what was recorded.

@@ -6,7 +6,8 @@ use welkin_shaders::{Definitions, compile};
 
 use super::RenderError;
 use crate::gpu::{
-    AddressMode, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, Pipeline, Sampler,
+    AddressMode, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, NextUse, Pace,
+    Pipeline, Sampler,
 };
 
 /// Images, buffers and pipelines that outlive a frame.
@@ -20,6 +21,10 @@ pub struct Resources {
     parked: Vec<Parked>,
     group: usize,
     pipelines: HashMap<(&'static str, Definitions), Pipeline>,
+    /// How long submissions may be, where others use the device as well.
+    pub pace: Option<Pace>,
+    /// Images of the host's that a frame is drawn into, and what it does with them next.
+    pub targets: Vec<(&'static str, GpuImage, NextUse)>,
 }
 
 /// Images and buffers of a group that is not at the front.
@@ -47,6 +52,8 @@ impl Resources {
             parked: Vec::new(),
             group: 0,
             pipelines: HashMap::new(),
+            pace: None,
+            targets: Vec::new(),
         })
     }
 
@@ -104,9 +111,11 @@ impl Resources {
         &self.sampler
     }
 
-    /// Frees what a skipped pass would have left.
+    /// Frees what a skipped pass would have left; targets stay.
     pub fn release(&mut self, name: &str) {
-        self.images.remove(name);
+        if self.targets.iter().all(|(target, ..)| *target != name) {
+            self.images.remove(name);
+        }
     }
 
     /// Brings the images and buffers of a group of wavelengths to the front; those of `shared` names come along.

@@ -73,6 +73,12 @@ impl History {
         self.results.remove(pass);
     }
 
+    /// Results of these passes are being overwritten: until the plan is recorded they are nothing.
+    pub fn begin(&mut self, plan: &Plan) {
+        let running = plan.passes.iter().filter(|pass| pass.decision != Decision::Reuse);
+        running.for_each(|pass| self.forget(pass.name));
+    }
+
     /// Remembers what a plan's passes have computed.
     pub fn record(&mut self, plan: &Plan) {
         for pass in &plan.passes {

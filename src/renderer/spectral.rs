@@ -32,23 +32,31 @@ impl Renderer {
         settings: Settings,
         outputs: Outputs,
     ) -> Result<Rendered, RenderError> {
+        let timings = self.execute_groups(scene, settings, outputs)?;
+        let (frame, picture) = self.read_colour(scene, outputs)?;
+        Ok(Rendered { frame, picture, timings })
+    }
+
+    /// Computes the groups one after the other into the shared images.
+    pub(super) fn execute_groups(
+        &mut self,
+        scene: &Scene,
+        settings: Settings,
+        outputs: Outputs,
+    ) -> Result<Timings, RenderError> {
         let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
-        let mut all = Vec::new();
-        let parts = parts(scene);
-        for part in &parts {
+        let run = |part: &SpectralPart| {
             let at = scene.at(&part.wavelengths);
             let facts = Facts { part: Some(*part), ..Facts::new(&at, settings, Orders::All, outputs)? };
             self.select_group(part.index);
             let timings = self.execute("frame", &facts, &passes, 0);
             // The next group overwrites the images of the frame.
             FRAME.iter().for_each(|pass| self.history.forget(pass.declaration.name));
-            all.push(timings?);
-        }
-        let result = self.read_colour(scene, outputs);
+            timings
+        };
+        let all: Result<Vec<_>, RenderError> = parts(scene).iter().map(run).collect();
         self.select_group(0);
-        FRAME.iter().for_each(|pass| self.history.forget(pass.declaration.name));
-        let (frame, picture) = result?;
-        Ok(Rendered { frame, picture, timings: joined(all) })
+        Ok(joined(all?))
     }
 
     fn read_colour(&self, scene: &Scene, outputs: Outputs) -> Result<(Frame, Option<Vec<u8>>), RenderError> {
