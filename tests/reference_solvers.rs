@@ -4,6 +4,7 @@
 mod tables;
 
 use std::fs;
+use std::path::Path;
 use std::process::{Command, Output};
 
 use glam::DVec3;
@@ -16,6 +17,7 @@ use welkin::reference::path::{FirstOrderBy, View};
 use welkin::reference::probe::{direction, run};
 use welkin::reference::single::first_order;
 use welkin::reference::{Effort, Emitter, World};
+use welkin::scene::Scene;
 use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 const SCENE: &str = "preset = \"earth\"\n[sun]\nelevation_deg = 10\nazimuth_deg = 90\n\
@@ -165,6 +167,36 @@ fn single_scattering_under_a_disc_by_quadrature_is_what_walks_find() {
             assert!(noise < 0.02 * value && exact.error[band] < 1e-3 * value, "{label}");
             // Control: a disc one degree away is told apart.
             assert!((beside.value[band] - value).abs() > 4.0 * noise, "{label}");
+        }
+    }
+}
+
+#[test]
+fn single_scattering_through_a_cloud_by_quadrature_is_what_walks_find() {
+    let scene = |albedo: f64| {
+        let text = format!(
+            "preset = \"earth\"\n[[clouds]]\nkind = \"cumulus\"\nalbedo = {albedo}\n\
+             [sun]\nelevation_deg = 50\nazimuth_deg = 60\nangular_radius_deg = 0\n\
+             [camera]\naltitude_m = 2\nelevation_deg = 0\nazimuth_deg = 0\n"
+        );
+        World::from_scene(&Scene::parse(&text, Path::new("cloud.toml")).unwrap())
+    };
+    let (cloudy, darker) = (scene(1.0), scene(0.3));
+    // Through a thin edge and into a bright side.
+    for (zenith_deg, azimuth_deg) in [(40.0, 0.0), (50.0, 0.0)] {
+        let position = DVec3::new(0.0, 0.0, 2.0);
+        let view = direction(f64::to_radians(zenith_deg), f64::to_radians(azimuth_deg));
+        let exact = first_order(&cloudy, position, view, 1e-3).single;
+        let other = first_order(&darker, position, view, 1e-3).single;
+        let ray = View::new(&cloudy, position, view, FirstOrderBy::Walks);
+        let walked = run(&ray, Effort::Walks(8192), Orders::Single, 1, 0);
+        for band in 0..3 {
+            let (value, noise) = (walked.mean.single[band], walked.single_error[band]);
+            let label = format!("{zenith_deg}°, band {band}: {exact:?} and {value} ± {noise}");
+            assert!((exact.value[band] - value).abs() < 4.0 * noise + exact.error[band], "{label}");
+            assert!(noise < 0.03 * value && exact.error[band] < 5e-3 * value, "{label}");
+            // Control: water that absorbs most of it is told apart.
+            assert!((other.value[band] - value).abs() > 4.0 * noise + other.error[band], "{label}");
         }
     }
 }

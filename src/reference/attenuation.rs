@@ -9,10 +9,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 use welkin_lut::{BAND_COUNT, Bands};
 
+use super::field::USUAL_STEP;
 use super::light::Emitter;
 use super::matter::around;
 use super::random::Draw;
-use super::single::depth_between;
+use super::sight_line::depth_between;
 use super::spectrum;
 use super::tally::Tally;
 use super::walk::{State, Walker};
@@ -73,7 +74,7 @@ fn irradiance(world: &World, height_m: f64, walks: u64, draw: Draw) -> Bands {
             && let Some(span) = world.shape.span(at, *toward)
             && !world.shape.blocked(at, *toward)
         {
-            let depth = depth_between(world, at, *toward, span.start_m, span.end_m);
+            let depth = depth_between(world, at, *toward, (span.start_m, span.end_m), USUAL_STEP);
             let direct = spectrum::product(*irradiance, spectrum::attenuation(depth));
             spectrum::accumulate(&mut total, up.dot(*toward).max(0.0), direct);
         }

@@ -11,6 +11,9 @@ use super::random::Draw;
 use super::shape::clip;
 use super::spectrum;
 
+/// Steps through bodies where nobody asks for others, in details of their fields.
+pub const USUAL_STEP: f64 = 0.5;
+
 /// A density in space, relative to the coefficients it is used with.
 pub trait DensityField: std::fmt::Debug + Send + Sync {
     /// The box outside which the density is zero: its lowest and its highest corner, m.
@@ -120,26 +123,36 @@ impl Body {
 }
 
 impl Body {
-    /// τ between two distances along a ray, by 4-point Gauss steps no longer than half of the field's detail.
+    /// τ between two distances along a ray, by 4-point Gauss steps of the usual length.
     pub fn optical_depth(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64) -> Bands {
+        self.optical_depth_by(p, d, from_m, to_m, USUAL_STEP)
+    }
+
+    /// The same by steps of another length, in details of the field. Stretches without matter cost nothing.
+    pub fn optical_depth_by(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64, step: f64) -> Bands {
         const NODES: [(f64, f64); 2] =
             [(0.339_981_043_584_856_26, 0.652_145_154_862_546_1), (0.861_136_311_594_052_6, 0.347_854_845_137_453_85)];
         let Some((start, end)) = self.span(p, d) else { return spectrum::ZERO };
         let (mut t, end) = (start.max(from_m), end.min(to_m));
         let mut column = 0.0;
-        while t < end {
-            let stretch_end = self.field.stretch(p, d, t).0.min(end);
-            let steps = ((stretch_end - t) / (0.5 * self.field.detail_m())).ceil().max(1.0);
-            let half = 0.5 * (stretch_end - t) / steps;
-            for k in 0..steps as usize {
-                let middle = t + half * (2 * k + 1) as f64;
-                for (node, weight) in NODES {
-                    let (a, b) = (p + d * (middle - half * node), p + d * (middle + half * node));
-                    column += half * weight * (self.field.density(a) + self.field.density(b));
+        if t >= end {
+            return spectrum::ZERO;
+        }
+        self.field.march(p, d, t, end, &mut |stretch_end, majorant| {
+            if majorant > 0.0 {
+                let steps = ((stretch_end - t) / (step * self.field.detail_m())).ceil().max(1.0);
+                let half = 0.5 * (stretch_end - t) / steps;
+                for k in 0..steps as usize {
+                    let middle = t + half * (2 * k + 1) as f64;
+                    for (node, weight) in NODES {
+                        let (a, b) = (p + d * (middle - half * node), p + d * (middle + half * node));
+                        column += half * weight * (self.field.density(a) + self.field.density(b));
+                    }
                 }
             }
             t = stretch_end;
-        }
+            true
+        });
         self.matter[0].extinction_per_m.map(|c| c * column)
     }
 }

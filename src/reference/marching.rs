@@ -12,11 +12,13 @@ use rayon::prelude::*;
 use welkin_lut::{BAND_COUNT, Bands};
 
 use super::effort::Effort;
+use super::field::USUAL_STEP;
 use super::light::Emitter;
 use super::matter::around;
 use super::random::Draw;
 use super::shape::{End, Span};
-use super::single::{depth_between, emitted, in_scattering};
+use super::sight_line::depth_between;
+use super::single::{emitted, in_scattering};
 use super::spectrum;
 use super::transport::extinction;
 use super::world::World;
@@ -204,7 +206,7 @@ fn direct(world: &World, at: DVec3, draw: &mut Draw) -> Vec<(DVec3, Bands)> {
         };
         if span.end == End::Space || span.end_m >= sample.distance_m {
             let end = span.end_m.min(sample.distance_m);
-            let depth = depth_between(world, at, sample.direction, span.start_m, end);
+            let depth = depth_between(world, at, sample.direction, (span.start_m, end), USUAL_STEP);
             arriving.push((sample.direction, spectrum::product(sample.irradiance, spectrum::attenuation(depth))));
         }
     }

@@ -29,6 +29,7 @@ mod random;
 mod relief;
 mod segment;
 mod shape;
+mod sight_line;
 pub mod single;
 pub mod slab;
 mod solver;

@@ -8,8 +8,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 use welkin_lut::{BAND_COUNT, Bands};
 
+use super::field::USUAL_STEP;
 use super::first_event::FirstEvent;
 use super::random::Draw;
+use super::sight_line::depth_between;
 use super::single::{self, FirstOrder};
 use super::spectrum;
 use super::tally::{ORDER_BINS, Tally};
@@ -133,7 +135,7 @@ impl<'a> View<'a> {
         };
         let sample = event.sample(walker.draw.uniform());
         let at = self.position + self.direction * sample.t_m;
-        let depth = single::depth_between(self.world, self.position, self.direction, event.start_m(), sample.t_m);
+        let depth = depth_between(self.world, self.position, self.direction, (event.start_m(), sample.t_m), USUAL_STEP);
         state.weight = spectrum::attenuation(depth);
         let sampled = |light: &_| !single::is_covered(light);
         if sample.on_ground {

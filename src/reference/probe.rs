@@ -7,7 +7,7 @@ use welkin_lut::{BAND_COUNT, Bands};
 use super::disc::{first_order_with_discs, is_integrated};
 use super::effort::Effort;
 use super::path::{Budget, Estimate, FirstOrderBy, View};
-use super::single::{emits, first_order_within, is_covered};
+use super::single::{emits, first_order_within, is_covered, usual_error};
 use super::solver::{Solver, SolverError};
 use super::transport::transmittance;
 use super::world::World;
@@ -22,9 +22,6 @@ const PILOT_WALKS: u64 = 64;
 const FEWEST_WALKS: u64 = 128;
 /// Most walks in a batch, however small the error asked for.
 const MOST_WALKS: u64 = 1 << 22;
-
-/// Relative error of quadrature.
-const QUADRATURE_ERROR: f64 = 1e-7;
 
 /// Traces rays through a scene, over smooth ground, by the path tracer. The rays' sun angles place the first
 /// directional light; other lights stay.
@@ -84,7 +81,7 @@ fn placed(world: &World, ray: &Ray) -> (World, DVec3, DVec3) {
 
 /// What arrives after at most one event, or after exactly one in the medium.
 fn quadrature(world: &World, position: DVec3, toward: DVec3, orders: Orders) -> RayRadiance {
-    let first = first_order_with_discs(world, position, toward, QUADRATURE_ERROR);
+    let first = first_order_with_discs(world, position, toward, usual_error(world));
     let radiance = match orders {
         Orders::Single => first.single.value,
         Orders::All => first.total(),
@@ -100,13 +97,13 @@ pub fn direction(zenith_rad: f64, azimuth_rad: f64) -> DVec3 {
 
 fn trace(world: &World, ray: &Ray, orders: Orders, effort: Effort, seed: u64, stream: u64) -> RayRadiance {
     let (world, position, toward) = placed(world, ray);
-    // Through clouds walks are quicker than quadrature under every part of a disc; emitted light is a light as well.
-    if orders == Orders::Single && world.bodies.is_empty() && !emits(&world) {
+    // Emitted light is a light as well, whose scattering is left to walks.
+    if orders == Orders::Single && !emits(&world) {
         if ray.distance_m == f64::INFINITY && world.lights.iter().all(is_integrated) {
             return quadrature(&world, position, toward, orders);
         }
         if world.lights.iter().all(is_covered) {
-            let first = first_order_within(&world, position, toward, ray.distance_m, QUADRATURE_ERROR);
+            let first = first_order_within(&world, position, toward, ray.distance_m, usual_error(&world));
             let (radiance, transmittance) = (first.single.value, first.transmittance);
             return RayRadiance { radiance, transmittance, standard_error: [0.0; BAND_COUNT] };
         }

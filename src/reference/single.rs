@@ -9,6 +9,7 @@ use welkin_lut::Bands;
 use super::light::Emitter;
 use super::quadrature::{Integral, integrate};
 use super::shape::{End, Shape, Span};
+use super::sight_line::{SightLine, depth_between};
 use super::spectrum;
 use super::transport::breakpoints;
 use super::world::World;
@@ -31,6 +32,17 @@ impl FirstOrder {
     pub fn total(&self) -> Bands {
         std::array::from_fn(|j| self.single.value[j] + self.ground[j] + self.unscattered[j])
     }
+
+    /// Adds the difference from a coarser result to the error, and says whether it is within a share of the light.
+    fn agrees_with(&mut self, coarser: &Self, relative_error: f64) -> bool {
+        let (fine, coarse) = (self.total(), coarser.total());
+        let mut agree = true;
+        for j in 0..fine.len() {
+            self.single.error[j] += (self.single.value[j] - coarser.single.value[j]).abs();
+            agree &= (fine[j] - coarse[j]).abs() <= relative_error * fine[j];
+        }
+        agree
+    }
 }
 
 /// Whether [`first_order`] covers a light; the others have an extent and are sampled.
@@ -43,27 +55,65 @@ pub fn emits(world: &World) -> bool {
     world.air.emits() || world.bodies.iter().any(|body| body.matter[0].emission_per_m != spectrum::ZERO)
 }
 
+/// Relative error that [`first_order`] is asked for where it is the answer: through bodies, whose density has kinks
+/// everywhere, less is worth its time.
+pub fn usual_error(world: &World) -> f64 {
+    if world.bodies.is_empty() { 1e-7 } else { 1e-3 }
+}
+
 /// Everything up to the first event for the ray from `p` along the unit vector `d`, to a relative error.
 pub fn first_order(world: &World, p: DVec3, d: DVec3, relative_error: f64) -> FirstOrder {
     first_order_within(world, p, d, f64::INFINITY, relative_error)
 }
 
 /// The same for a ray that ends on a black surface at the distance `reach_m`, if nothing stops it before.
+///
+/// Optical depth through bodies comes from steps that are halved until two results agree to the relative error; their
+/// difference is part of the error of the result.
 pub fn first_order_within(world: &World, p: DVec3, d: DVec3, reach_m: f64, relative_error: f64) -> FirstOrder {
+    let mut body_step = COARSEST_STEP;
+    let mut result = first_order_by(world, p, d, reach_m, Resolution { relative_error, body_step });
+    while !world.bodies.is_empty() && body_step > FINEST_STEP {
+        body_step *= 0.5;
+        let mut finer = first_order_by(world, p, d, reach_m, Resolution { relative_error, body_step });
+        let agree = finer.agrees_with(&result, relative_error);
+        result = finer;
+        if agree {
+            break;
+        }
+    }
+    result
+}
+
+/// Longest and shortest steps through bodies, in details of their fields.
+const COARSEST_STEP: f64 = 2.0;
+const FINEST_STEP: f64 = 0.125;
+
+/// How finely to integrate.
+#[derive(Debug, Clone, Copy)]
+struct Resolution {
+    relative_error: f64,
+    /// Steps through bodies, in details of their fields.
+    body_step: f64,
+}
+/// [`first_order_within`] at one resolution.
+fn first_order_by(world: &World, p: DVec3, d: DVec3, reach_m: f64, resolution: Resolution) -> FirstOrder {
     let mut result = FirstOrder { transmittance: spectrum::ONE, ..FirstOrder::default() };
     let span = world.shape.span(p, d).and_then(|span| span.within(reach_m));
     if let Some(span) = &span {
+        let Resolution { relative_error, body_step } = resolution;
         let cuts = lit_breakpoints(world, p, d, span);
-        result.single = integrate(|t| source(world, p, d, span, t), &cuts, relative_error, 0.0);
-        result.transmittance = spectrum::attenuation(depth_between(world, p, d, span.start_m, span.end_m));
+        let sight = SightLine::new(world, p, d, &cuts, body_step);
+        result.single = integrate(|t| source(world, p + d * t, d, &sight, t, body_step), &cuts, relative_error, 0.0);
+        result.transmittance = spectrum::attenuation(sight.depth_to(span.end_m));
         if emits(world) {
-            let emitted = integrate(|t| emission(world, p, d, span, t), &cuts, relative_error, 0.0);
-            result.unscattered = emitted.value;
+            let emission = |t| spectrum::product(emitted(world, p + d * t), spectrum::attenuation(sight.depth_to(t)));
+            result.unscattered = integrate(emission, &cuts, relative_error, 0.0).value;
         }
     }
     match span {
         Some(span) if span.end == End::Ground => {
-            let lit = ground_radiance(world, p + d * span.end_m);
+            let lit = ground_radiance(world, p + d * span.end_m, resolution.body_step);
             result.ground = spectrum::product(result.transmittance, lit);
         }
         _ if reach_m < f64::INFINITY => {}
@@ -82,44 +132,35 @@ pub fn first_order_within(world: &World, p: DVec3, d: DVec3, reach_m: f64, relat
     result
 }
 
-/// τ between two distances along a ray: rules of proven error through the air, composite Gauss through bodies.
-pub fn depth_between(world: &World, p: DVec3, d: DVec3, from_m: f64, to_m: f64) -> Bands {
-    let mut depth = world.air.optical_depth(&world.shape.line(p, d), from_m, to_m);
-    for body in world.bodies.iter() {
-        spectrum::accumulate(&mut depth, 1.0, body.optical_depth(p, d, from_m, to_m));
-    }
-    depth
-}
-
 /// Irradiance (W·m⁻²·nm⁻¹, normal to its direction) that arrives at `at` from a light without extent, and from where.
-fn arriving(world: &World, light: &Emitter, at: DVec3) -> Option<(DVec3, Bands)> {
+fn arriving(world: &World, light: &Emitter, at: DVec3, body_step: f64) -> Option<(DVec3, Bands)> {
     let sample = light.sample(at, 0.0, 0.0);
     let mut irradiance = sample.irradiance;
     if let Some(span) = world.shape.span(at, sample.direction) {
         if span.end == End::Ground && span.end_m < sample.distance_m {
             return None;
         }
-        let end = span.end_m.min(sample.distance_m);
-        let depth = depth_between(world, at, sample.direction, span.start_m, end);
+        let way = (span.start_m, span.end_m.min(sample.distance_m));
+        let depth = depth_between(world, at, sample.direction, way, body_step);
         irradiance = spectrum::product(irradiance, spectrum::attenuation(depth));
     }
     Some((sample.direction, irradiance))
 }
 
-/// The integrand: what is scattered at a distance towards the start of the ray and gets there.
-fn source(world: &World, p: DVec3, d: DVec3, span: &Span, t_m: f64) -> Bands {
-    let at = p + d * t_m;
+/// The integrand: what is scattered at a point of the ray, at a distance, towards its start and gets there.
+fn source(world: &World, at: DVec3, d: DVec3, sight: &SightLine, t_m: f64, body_step: f64) -> Bands {
+    let transmittance = spectrum::attenuation(sight.depth_to(t_m));
     let mut total = spectrum::ZERO;
+    // Deep in a cloud nothing arrives, and its shadow rays are the longest.
+    if transmittance == spectrum::ZERO {
+        return total;
+    }
     for light in world.lights.iter().filter(|light| is_covered(light)) {
-        let Some((direction, irradiance)) = arriving(world, light, at) else { continue };
+        let Some((direction, irradiance)) = arriving(world, light, at, body_step) else { continue };
         let response = in_scattering(world, at, d.dot(direction).clamp(-1.0, 1.0));
         spectrum::accumulate(&mut total, 1.0, spectrum::product(response, irradiance));
     }
-    if total == spectrum::ZERO {
-        return total;
-    }
-    let depth = depth_between(world, p, d, span.start_m, t_m);
-    spectrum::product(total, spectrum::attenuation(depth))
+    spectrum::product(total, transmittance)
 }
 
 /// b P(cos θ) of everything at a point, 1/m/sr.
@@ -143,18 +184,12 @@ pub fn emitted(world: &World, at: DVec3) -> Bands {
     total
 }
 
-fn emission(world: &World, p: DVec3, d: DVec3, span: &Span, t_m: f64) -> Bands {
-    let total = emitted(world, p + d * t_m);
-    let depth = depth_between(world, p, d, span.start_m, t_m);
-    spectrum::product(total, spectrum::attenuation(depth))
-}
-
 /// Radiance leaving the ground at a point under the lights without extent, without any scattering in between.
-fn ground_radiance(world: &World, at: DVec3) -> Bands {
+fn ground_radiance(world: &World, at: DVec3, body_step: f64) -> Bands {
     let normal = world.shape.up(at);
     let mut total = spectrum::ZERO;
     for light in world.lights.iter().filter(|light| is_covered(light)) {
-        if let Some((direction, irradiance)) = arriving(world, light, at) {
+        if let Some((direction, irradiance)) = arriving(world, light, at, body_step) {
             let cosine = normal.dot(direction).max(0.0);
             spectrum::accumulate(&mut total, cosine / PI, spectrum::product(world.ground_albedo, irradiance));
         }

@@ -19,14 +19,22 @@ pub fn breakpoints(world: &World, p: DVec3, d: DVec3, span: &Span) -> Vec<f64> {
         cuts.extend(line.rise(altitude));
     }
     for body in world.bodies.iter() {
-        if let Some((start, end)) = body.span(p, d) {
-            let mut t = start;
-            while t < end.min(span.end_m) {
-                cuts.push(t);
-                t = body.field.stretch(p, d, t).0;
-            }
-            cuts.push(end);
+        let Some((start, end)) = body.span(p, d) else { continue };
+        let (start, end) = (start.max(span.start_m), end.min(span.end_m));
+        if start >= end {
+            continue;
         }
+        // Where one empty stretch follows another nothing changes.
+        let mut was_empty = false;
+        cuts.push(start);
+        body.field.march(p, d, start, end, &mut |end_m, majorant| {
+            if was_empty && majorant == 0.0 {
+                cuts.pop();
+            }
+            was_empty = majorant == 0.0;
+            cuts.push(end_m);
+            true
+        });
     }
     cuts.retain(|&t| t > span.start_m && t < span.end_m);
     cuts.extend([span.start_m, span.end_m]);

@@ -95,7 +95,11 @@ fn trace(arguments: &Arguments, solver: Solver, scene: &Scene, rays: &[Ray]) -> 
         Backend::Reference => {
             let effort = arguments.samples.map_or(Effort::RelativeError(RELATIVE_ERROR), Effort::Walks);
             let answers = reference::probe_by(solver, scene, rays, orders, effort, 0)?;
-            eprintln!("solver: {solver}");
+            let first = match (solver, orders) {
+                (Solver::Path, Orders::Single) => ", first order by quadrature where lights and matter allow it",
+                _ => "",
+            };
+            eprintln!("solver: {solver}{first}");
             Ok(answers)
         }
     }

@@ -12,6 +12,7 @@ use crate::reference::disc::first_order_with_discs;
 use crate::reference::marching::March;
 use crate::reference::path::{Budget, FirstOrderBy, View};
 use crate::reference::shape::End;
+use crate::reference::single::usual_error;
 use crate::reference::solver::{Solver, SolverError};
 use crate::reference::transport;
 use crate::reference::world::World;
@@ -19,8 +20,6 @@ use crate::scene::{Camera, GroupColour, Scene};
 
 /// Rays across a pixel, in each direction, over which a light's disc is averaged.
 const DISC_RAYS: u32 = 8;
-/// Relative error of quadrature.
-const QUADRATURE_ERROR: f64 = 1e-6;
 
 /// What the camera of a scene sees. The radiance of a pixel is that of the ray through its centre; only the discs of
 /// lights are averaged over the pixel.
@@ -139,7 +138,7 @@ impl<'a> Subject for &'a CameraView {
             let world = &group.world;
             let prepared = match self.solver {
                 Solver::Single => {
-                    Prepared::Quadrature(first_order_with_discs(world, position, direction, QUADRATURE_ERROR).total())
+                    Prepared::Quadrature(first_order_with_discs(world, position, direction, usual_error(world)).total())
                 }
                 Solver::Marching(march) => Prepared::March(march, direction),
                 Solver::Path => {
