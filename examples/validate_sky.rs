@@ -1,7 +1,7 @@
 //! The real-time sky against tables that other codes made: every row, every quality; prints Markdown.
 //!
-//! `cargo run --release --example validate_sky [QUALITY...] [METHOD...]`, where a method is a treatment of multiple scattering
-//! by its name: then only light of all orders is compared.
+//! `cargo run --release --example validate_sky -- [--worst] [QUALITY...] [METHOD...]`, where a method is a treatment of multiple
+//! scattering by its name: then only light of all orders is compared. `--worst` names the values that are farthest off.
 
 #[path = "../tests/reference/sky.rs"]
 mod sky;
@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use welkin::gpu::DeviceRequest;
 use welkin::plan::{MultipleScattering, Quality, Settings};
-use welkin::probe::Orders;
+use welkin::probe::{Orders, RayRadiance};
 use welkin::renderer::Renderer;
 
 /// A table, which orders of scattering, the column that holds them, and the suns below the horizon it knows.
@@ -23,10 +23,23 @@ const COMPARISONS: [(&str, Orders, &str, &[f64]); 4] = [
     ("earth_views.csv", Orders::All, "total", &[92.0, 95.0, 96.0, 99.0, 102.0]),
 ];
 
+/// Values of each table that `--worst` names.
+const WORST: usize = 16;
+
+fn print_worst(rows: &[tables::Row], found: &[RayRadiance], column: &str) {
+    let error = |i: usize| 100.0 * (found[i].radiance[rows[i].band()] / rows[i].number(column) - 1.0);
+    let mut shining: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].number(column) > 0.0).collect();
+    shining.sort_by(|&a, &b| error(b).abs().total_cmp(&error(a).abs()));
+    for &i in shining.iter().take(WORST) {
+        eprintln!("  {:+.2} %: {}", error(i), rows[i].line());
+    }
+}
+
 fn main() {
     let mut qualities: Vec<Quality> = Vec::new();
     let mut methods: Vec<MultipleScattering> = Vec::new();
-    for name in std::env::args().skip(1) {
+    let (options, names): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|word| word.starts_with('-'));
+    for name in names {
         match (name.parse(), name.parse()) {
             (Ok(quality), _) => qualities.push(quality),
             (_, Ok(method)) => methods.push(method),
@@ -62,6 +75,9 @@ fn main() {
                 named => format!(", {named}"),
             };
             println!("| {file} | {orders:?} | {quality}{method} | {day} | {} | {seconds:.0} |", low.join(", "));
+            if options.iter().any(|option| option == "--worst") {
+                print_worst(&rows, &found, column);
+            }
         }
     }
 }

@@ -18,6 +18,8 @@ struct Geometry {
     top_m: f32,
     padding_a: f32,
     padding_b: f32,
+    sun_warp: vec3<f32>,
+    padding_c: f32,
     range: mapping::SkyViewRange,
 }
 
@@ -34,8 +36,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let depth = mapping::optical_depth_from_unit(unit, geometry.radius_m, geometry.top_m);
     let depth_back = mapping::optical_depth_to_unit(depth.altitude_m, depth.mu, geometry.radius_m, geometry.top_m);
     textureStore(mapped, id.xy, 0, vec4<f32>(depth.altitude_m, depth.mu, depth_back));
-    let light = mapping::multiple_scattering_from_unit(unit, geometry.top_m);
-    let light_back = mapping::multiple_scattering_to_unit(light.altitude_m, light.mu, geometry.top_m);
+    let light = mapping::multiple_scattering_from_unit(unit, geometry.top_m, geometry.sun_warp);
+    let light_back = mapping::multiple_scattering_to_unit(light.altitude_m, light.mu, geometry.top_m, geometry.sun_warp);
     textureStore(mapped, id.xy, 1, vec4<f32>(light.altitude_m, light.mu, light_back));
     for (var half = 0u; half < 2u; half++) {
         let view = mapping::sky_view_from_unit(unit, half == 1u, geometry.range);
@@ -98,13 +100,15 @@ fn texels_come_back_to_themselves_on_the_device_as_on_the_host() {
         for altitude_m in [0.0, 2.0, 10_000.0, 99_999.0, 400_000.0] {
             let case = Case {
                 optical_depth: OpticalDepthMapping { radius_m: planet.radius_m, top_m: planet.atmosphere_height_m },
-                multiple_scattering: MultipleScatteringMapping { top_m: planet.atmosphere_height_m },
+                multiple_scattering: MultipleScatteringMapping::new(&planet),
                 sky_view: SkyViewMapping::new(&planet, altitude_m, SIZE[1]),
             };
             let range = case.sky_view;
             let numbers = [planet.radius_m, planet.atmosphere_height_m, 0.0, 0.0];
             let view = [range.horizon_rad, range.sky_end_rad, range.sky_end_y, range.last_y];
-            let block: Vec<f32> = numbers.into_iter().chain(view).map(|value| value as f32).collect();
+            let [k, low, span] = case.multiple_scattering.sun_warp();
+            let block: Vec<f32> =
+                numbers.into_iter().chain([k, low, span, 0.0]).chain(view).map(|value| value as f32).collect();
             let shape = ImageShape::D2Array(SIZE[0], SIZE[1], 5);
             let image = gpu.image("mapped", shape, ImageFormat::Rgba32Float).unwrap();
             let mut commands = gpu.record("round trip").unwrap();

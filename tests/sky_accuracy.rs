@@ -50,8 +50,8 @@ impl Bounds<'_> {
 
 fn as_it_is(_: &mut Scene) {}
 
-/// The rows of the scene that the engines ship: variant B over a bright ground. A quarter of the work for the dearest
-/// quality; `cargo run --release --example validate_sky` takes all rows at all qualities.
+/// The rows of the scene that the engines ship: variant B over a bright ground. A quarter of the work for the dear
+/// qualities; `cargo run --release --example validate_sky` takes all rows at all qualities.
 fn of_one_scene(rows: Vec<Row>) -> Vec<Row> {
     let belongs = |row: &Row| (!row.has("variant") || row.text("variant") == "B") && row.number("ground_albedo") > 0.0;
     rows.into_iter().filter(belongs).collect()
@@ -74,44 +74,52 @@ fn single_scattering_is_right_from_noon_to_twilight() {
     });
 }
 
-#[test]
-fn light_of_all_orders_is_right_from_noon_to_twilight_at_every_quality() {
-    with_renderer(|renderer| {
-        let rows = tables::read("earth_sky.csv");
-        let mut keeps = |rows: &[Row], quality: Quality, day, [first, second]: [f64; 2], change: fn(&mut Scene)| {
-            let found = answers(renderer, rows, Settings::of(quality), Orders::All, change);
-            let bounds = Bounds { day, night: &[(92.0..=92.0, first), (94.0..=94.0, second)] };
-            bounds.are_kept_by(quality.name(), &errors(rows, &found, "total_best"))
-        };
-        assert!(keeps(&rows, Quality::Low, [1.5, 6.0], [10.0, 20.0], as_it_is));
-        assert!(keeps(&rows, Quality::Medium, [1.5, 6.0], [10.0, 20.0], as_it_is));
-        assert!(keeps(&rows, Quality::High, [0.6, 3.0], [6.0, 12.0], as_it_is));
-        let rows = of_one_scene(rows);
-        assert!(keeps(&rows, Quality::Ultra, [0.3, 1.5], [4.0, 8.0], as_it_is));
-        // Negative control: a ground that reflects a tenth more must be noticed.
-        assert!(!keeps(&rows, Quality::High, [0.6, 3.0], [6.0, 12.0], |scene| {
-            scene.planet.ground_albedo.iter_mut().for_each(|albedo| *albedo += 0.1);
-        }));
-    });
+/// What a quality promises for both tables, in per cent.
+struct Promise {
+    quality: Quality,
+    /// From 500 m, looking up: by day, at 92° and at 94°.
+    sky: ([f64; 2], [f64; 2]),
+    /// From the ground to orbit: by day, and from 92 to 102°.
+    views: ([f64; 2], f64),
 }
 
+const PROMISES: [Promise; 4] = [
+    Promise { quality: Quality::Low, sky: ([1.5, 6.0], [10.0, 20.0]), views: ([2.5, 10.0], 40.0) },
+    Promise { quality: Quality::Medium, sky: ([1.5, 6.0], [10.0, 20.0]), views: ([2.5, 10.0], 40.0) },
+    Promise { quality: Quality::High, sky: ([0.6, 3.0], [6.0, 12.0]), views: ([1.0, 5.0], 25.0) },
+    Promise { quality: Quality::Ultra, sky: ([0.3, 1.5], [4.0, 8.0]), views: ([0.5, 3.0], 15.0) },
+];
+
 #[test]
-fn every_altitude_and_direction_is_right_from_the_ground_to_orbit() {
+fn light_of_all_orders_is_right_from_noon_to_twilight_and_from_the_ground_to_orbit() {
     with_renderer(|renderer| {
-        let rows = tables::read("earth_views.csv");
-        let mut keeps = |rows: &[Row], quality: Quality, day, night, change: fn(&mut Scene)| {
-            let found = answers(renderer, rows, Settings::of(quality), Orders::All, change);
+        let (sky_rows, view_rows) = (tables::read("earth_sky.csv"), tables::read("earth_views.csv"));
+        let mut keeps = |promise: &Promise, [sky_rows, view_rows]: [&[Row]; 2], change: fn(&mut Scene)| {
+            let settings = Settings::of(promise.quality);
+            let (day, [first, second]) = promise.sky;
+            let bounds = Bounds { day, night: &[(92.0..=92.0, first), (94.0..=94.0, second)] };
+            let found = answers(renderer, sky_rows, settings, Orders::All, change);
+            let sky = bounds.are_kept_by(promise.quality.name(), &errors(sky_rows, &found, "total_best"));
+            let (day, night) = promise.views;
             let bounds = Bounds { day, night: &[(92.0..=102.0, night)] };
-            bounds.are_kept_by(quality.name(), &errors(rows, &found, "total"))
+            let found = answers(renderer, view_rows, settings, Orders::All, change);
+            let views = bounds.are_kept_by(promise.quality.name(), &errors(view_rows, &found, "total"));
+            [sky, views]
         };
-        assert!(keeps(&rows, Quality::Medium, [2.5, 10.0], 40.0, as_it_is));
-        assert!(keeps(&rows, Quality::High, [1.0, 5.0], 25.0, as_it_is));
-        let rows = of_one_scene(rows);
-        assert!(keeps(&rows, Quality::Ultra, [0.5, 3.0], 15.0, as_it_is));
-        // Negative control: haze that reaches a quarter higher must be noticed.
-        assert!(!keeps(&rows, Quality::High, [1.0, 5.0], 25.0, |scene| {
+        for promise in &PROMISES[..2] {
+            assert_eq!(keeps(promise, [&sky_rows, &view_rows], as_it_is), [true; 2], "{}", promise.quality);
+        }
+        let (sky_rows, view_rows) = (of_one_scene(sky_rows), of_one_scene(view_rows));
+        for promise in &PROMISES[2..] {
+            assert_eq!(keeps(promise, [&sky_rows, &view_rows], as_it_is), [true; 2], "{}", promise.quality);
+        }
+        // Negative controls: a ground that reflects a tenth more must be noticed, and haze that reaches a quarter higher.
+        let brighter = |scene: &mut Scene| scene.planet.ground_albedo.iter_mut().for_each(|albedo| *albedo += 0.1);
+        assert!(!keeps(&PROMISES[2], [&sky_rows, &view_rows], brighter)[0]);
+        let deeper = |scene: &mut Scene| {
             scene.medium.constituents[1].profile = welkin_lut::DensityProfile::Exponential { scale_height_m: 1500.0 };
-        }));
+        };
+        assert!(!keeps(&PROMISES[2], [&sky_rows, &view_rows], deeper)[1]);
     });
 }
 

@@ -58,11 +58,10 @@ struct Constituent {
 struct Atmosphere {
     ground_albedo: vec3<f32>,
     radius_m: f32,
+    // How tables of multiply scattered light are spread over the suns: see welkin::mapping.
+    sun_warp: vec3<f32>,
     // Altitude of the shell above which there is vacuum.
     top_m: f32,
-    padding_a: f32,
-    padding_b: f32,
-    padding_c: f32,
     constituents: array<Constituent, CONSTITUENT_SLOTS>,
 }
 

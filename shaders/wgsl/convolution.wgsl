@@ -6,6 +6,7 @@
 
 #import welkin::atmosphere::{atmosphere, phase_per_sr, PI, PROFILE_GROUP_COUNT, SCATTERER_COUNT, SCATTERER_SLOTS}
 #import welkin::source_grid::{direction_of, DIRECTION_COUNT}
+#import welkin::spherical_harmonics::harmonics
 
 // Radiance seen along each direction of the grid, filled by all invocations before a barrier.
 var<workgroup> field: array<vec3<f32>, DIRECTION_COUNT>;
@@ -57,18 +58,25 @@ fn irradiance() -> vec3<f32> {
     return sum;
 }
 
-// The field's mean over directions, and its first zonal coefficient I_10 / I_00.
-struct Mean {
-    radiance: vec3<f32>,
-    tilt: vec3<f32>,
-}
-
-fn mean_of_field() -> Mean {
+// The field's mean over directions.
+fn mean_of_field() -> vec3<f32> {
     var sum = vec3<f32>(0.0);
-    var upward = vec3<f32>(0.0);
     for (var i = 0u; i < DIRECTION_COUNT; i++) {
         sum += directions[i].w * field[i];
-        upward += directions[i].w * directions[i].z * field[i];
     }
-    return Mean(sum / (4.0 * PI), sqrt(3.0) * upward / max(sum, vec3<f32>(1e-30)));
+    return sum / (4.0 * PI);
+}
+
+// The field's coefficient of a spherical harmonic, k from 1 to HARMONIC_COUNT, over that of degree 0.
+fn harmonic_of_field(k: u32) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    var all = vec3<f32>(0.0);
+    for (var i = 0u; i < DIRECTION_COUNT; i++) {
+        let direction = directions[i];
+        let sine = sqrt(max(1.0 - direction.z * direction.z, 0.0));
+        var y = harmonics(direction.z, direction.x / max(sine, 1e-6));
+        sum += direction.w * y[k] * field[i];
+        all += direction.w * y[0] * field[i];
+    }
+    return sum / max(all, vec3<f32>(1e-30));
 }

@@ -64,7 +64,7 @@ struct Emission {
 
 fn field_at(column: u32, altitude_m: f32) -> vec3<f32> {
     let size = vec2<f32>(textureDimensions(emission_field));
-    let y = mapping::multiple_scattering_to_unit(altitude_m, 0.0, atmosphere.top_m).y;
+    let y = mapping::multiple_scattering_to_unit(altitude_m, 0.0, atmosphere.top_m, atmosphere.sun_warp).y;
     let uv = mapping::inset(vec2<f32>(f32(column) / (size.x - 1.0), y), size);
     return textureSampleLevel(emission_field, table_sampler, uv, 0.0).rgb;
 }

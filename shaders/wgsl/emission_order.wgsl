@@ -45,7 +45,9 @@ fn main(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_i
     let row = workgroup.x;
     let rows = textureDimensions(emission_sum).y;
     let unit_y = f32(row) / f32(rows - 1u);
-    let altitude_m = mapping::multiple_scattering_from_unit(vec2<f32>(0.0, unit_y), atmosphere.top_m).altitude_m;
+    let unit = vec2<f32>(0.0, unit_y);
+    let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m, atmosphere.sun_warp);
+    let altitude_m = here.altitude_m;
     let mu_h = horizon_mu(atmosphere.radius_m, altitude_m);
     let mu = ring(invocation, mu_h).x;
     let hits_ground = direction_of(invocation * AZIMUTH_COUNT, mu_h).hits_ground;

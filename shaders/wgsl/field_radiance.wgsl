@@ -1,7 +1,7 @@
 #define_import_path welkin::field_radiance
 // The radiance that arrives at a point along a ray, order by order; for unit irradiance of the light.
 
-#import welkin::atmosphere::{atmosphere, densities, phase_per_sr, PI, SCATTERER_COUNT}
+#import welkin::atmosphere::{atmosphere, densities, phase_per_sr, PI, SCATTERER_COUNT, SCATTERER_SLOTS}
 #import welkin::geometry::horizon_mu
 #import welkin::march::{
     air_ray, cut_at_shadow, ground_mu_s, leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, AirRay,
@@ -18,8 +18,9 @@ fn ray_from(altitude_m: f32, mu_s: f32, mu: f32, cos_phi: f32, hits_ground: bool
     return air_ray(altitude_m, mu, mu_s, nu, hits_ground);
 }
 
-// Light scattered once, or reflected once by the ground.
-fn first_order_radiance(uncut: AirRay, hits_ground: bool) -> vec3<f32> {
+// Light scattered once, or reflected once by the ground; with what each scatterer's phase function is along the ray.
+fn first_order_radiance(uncut: AirRay, hits_ground: bool, phases_per_sr: array<f32, SCATTERER_SLOTS>) -> vec3<f32> {
+    var phase = phases_per_sr;
     let ray = cut_at_shadow(uncut);
     var tau = vec3<f32>(0.0);
     var radiance = vec3<f32>(0.0);
@@ -37,7 +38,7 @@ fn first_order_radiance(uncut: AirRay, hits_ground: bool) -> vec3<f32> {
             var density = densities(node.altitude_m);
             var source = vec3<f32>(0.0);
             for (var c = 0u; c < SCATTERER_COUNT; c++) {
-                source += density[c] * phase_per_sr(c, ray.nu) * atmosphere.constituents[c].scattering_per_m;
+                source += density[c] * phase[c] * atmosphere.constituents[c].scattering_per_m;
             }
             radiance += node.weight_m * source * exp(-tau - optical_depth_to_top(node.altitude_m, mu_s));
         }
@@ -47,6 +48,15 @@ fn first_order_radiance(uncut: AirRay, hits_ground: bool) -> vec3<f32> {
         radiance += exp(-tau) * atmosphere.ground_albedo / PI * direct_ground_irradiance(ground_mu_s(ray));
     }
     return radiance;
+}
+
+// The phase functions at the angle between a ray and the light.
+fn phases_along(ray: AirRay) -> array<f32, SCATTERER_SLOTS> {
+    var phases_per_sr: array<f32, SCATTERER_SLOTS>;
+    for (var c = 0u; c < SCATTERER_COUNT; c++) {
+        phases_per_sr[c] = phase_per_sr(c, ray.nu);
+    }
+    return phases_per_sr;
 }
 
 // Light of one order more than a table of multiply scattered light holds.

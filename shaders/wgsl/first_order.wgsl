@@ -4,7 +4,7 @@
 
 #import welkin::atmosphere::atmosphere
 #import welkin::directions::{direction_of, field, irradiance, project, DIRECTION_COUNT, INVOCATION_COUNT}
-#import welkin::field_radiance::{first_order_radiance, ray_from}
+#import welkin::field_radiance::{first_order_radiance, phases_along, ray_from}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
 #import welkin::spherical_harmonics::COEFFICIENT_COUNT
@@ -18,13 +18,14 @@ const DARK: f32 = 1e-30;
 @compute @workgroup_size(#{INVOCATION_COUNT})
 fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
     let size = vec2<f32>(textureDimensions(first_order));
-    let here = mapping::multiple_scattering_from_unit(mapping::unit_from_texel(texel.xy, size), atmosphere.top_m);
+    let unit = mapping::unit_from_texel(texel.xy, size);
+    let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m, atmosphere.sun_warp);
     let mu_s = here.mu;
     let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
     for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
         let direction = direction_of(i, mu_h);
         let ray = ray_from(here.altitude_m, mu_s, direction.mu, direction.cos_phi, direction.hits_ground);
-        field[i] = first_order_radiance(ray, direction.hits_ground);
+        field[i] = first_order_radiance(ray, direction.hits_ground, phases_along(ray));
     }
     workgroupBarrier();
     for (var k = invocation; k < COEFFICIENT_COUNT; k += INVOCATION_COUNT) {

@@ -3,12 +3,14 @@
 // One workgroup per (altitude, mu_s), one invocation per direction; for unit irradiance of the light.
 
 #import welkin::atmosphere::{atmosphere, PROFILE_GROUP_COUNT}
-#import welkin::convolution::{field, irradiance, keep_direction, mean_of_field, source_function}
+#import welkin::convolution::{field, harmonic_of_field, irradiance, keep_direction, mean_of_field, source_function}
 #import welkin::field_radiance::{first_order_radiance, ray_from}
 #import welkin::geometry::horizon_mu
+#import welkin::glow::phases_towards
 #import welkin::mapping
 #import welkin::source_grid::{
-    direction_of, moment_texel, texel_of, DIRECTION_COUNT, IRRADIANCE_TILE, MEAN_TILE, TILE_SIZE, TILT_TILE
+    direction_of, moment_texel, texel_of, DIRECTION_COUNT, FIRST_HARMONIC_TILE, HARMONIC_COUNT, IRRADIANCE_TILE,
+    MEAN_TILE, TILE_SIZE
 }
 
 const INVOCATION_COUNT: u32 = #{GRID_INVOCATION_COUNT}u;
@@ -25,13 +27,13 @@ fn store(texel: vec2<u32>, layer: u32, value: vec3<f32>) {
 @compute @workgroup_size(#{GRID_INVOCATION_COUNT})
 fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
     let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(TILE_SIZE));
-    let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m);
+    let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m, atmosphere.sun_warp);
     let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
     for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
         keep_direction(i, mu_h, here.mu);
         let direction = direction_of(i, mu_h, here.mu);
         let ray = ray_from(here.altitude_m, here.mu, direction.mu, cos(direction.phi_rad), direction.hits_ground);
-        field[i] = first_order_radiance(ray, direction.hits_ground);
+        field[i] = first_order_radiance(ray, direction.hits_ground, phases_towards(i, mu_h, here.mu));
     }
     workgroupBarrier();
     for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
@@ -41,9 +43,11 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
         }
     }
     if invocation == 0u {
-        let mean = mean_of_field();
         store(moment_texel(IRRADIANCE_TILE, texel.xy), 0u, irradiance());
-        store(moment_texel(MEAN_TILE, texel.xy), 0u, mean.radiance);
-        textureStore(first_source, moment_texel(TILT_TILE, texel.xy), 0u, vec4<f32>(mean.tilt, 0.0));
+        store(moment_texel(MEAN_TILE, texel.xy), 0u, mean_of_field());
+    }
+    if invocation < HARMONIC_COUNT {
+        let place = moment_texel(FIRST_HARMONIC_TILE + invocation, texel.xy);
+        textureStore(first_source, place, 0u, vec4<f32>(harmonic_of_field(invocation + 1u), 0.0));
     }
 }

@@ -45,7 +45,8 @@ fn add_logarithmic(texel: vec2<u32>, layer: u32, value: vec3<f32>) {
 @compute @workgroup_size(#{INVOCATION_COUNT})
 fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
     let size = vec2<f32>(textureDimensions(sum));
-    let here = mapping::multiple_scattering_from_unit(mapping::unit_from_texel(texel.xy, size), atmosphere.top_m);
+    let unit = mapping::unit_from_texel(texel.xy, size);
+    let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m, atmosphere.sun_warp);
     let mu_s = here.mu;
     let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
     for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {

@@ -4,12 +4,13 @@
 // from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric.
 
 #import welkin::atmosphere::{atmosphere, PROFILE_GROUP_COUNT}
-#import welkin::convolution::{field, irradiance, keep_direction, mean_of_field, source_function}
+#import welkin::convolution::{field, harmonic_of_field, irradiance, keep_direction, mean_of_field, source_function}
 #import welkin::field_radiance::{next_order_radiance, ray_from}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
 #import welkin::source_grid::{
-    direction_of, moment_texel, texel_of, DIRECTION_COUNT, IRRADIANCE_TILE, MEAN_TILE, TILE_SIZE, TILT_TILE
+    direction_of, moment_texel, texel_of, DIRECTION_COUNT, FIRST_HARMONIC_TILE, HARMONIC_COUNT, IRRADIANCE_TILE,
+    MEAN_TILE, TILE_SIZE
 }
 
 const INVOCATION_COUNT: u32 = #{GRID_INVOCATION_COUNT}u;
@@ -31,7 +32,7 @@ const MAX_RATIO: f32 = 0.9;
 fn remainder(place: vec2<u32>) -> vec3<f32> {
 #ifdef CLOSE_SERIES
     let before = exp(textureLoad(previous_order, moment_texel(MEAN_TILE, place), 0, 0).rgb);
-    let ratio = mean_of_field().radiance / max(before, vec3<f32>(DARK));
+    let ratio = mean_of_field() / max(before, vec3<f32>(DARK));
     return 1.0 / (1.0 - clamp(ratio, vec3<f32>(0.0), vec3<f32>(MAX_RATIO)));
 #else
     return vec3<f32>(1.0);
@@ -51,7 +52,7 @@ fn add(texel: vec2<u32>, layer: u32, value_or_dark: vec3<f32>, rest: vec3<f32>) 
 @compute @workgroup_size(#{GRID_INVOCATION_COUNT})
 fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
     let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(TILE_SIZE));
-    let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m);
+    let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m, atmosphere.sun_warp);
     let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
     for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
         keep_direction(i, mu_h, here.mu);
@@ -68,13 +69,15 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
         }
     }
     if invocation == 0u {
-        let mean = mean_of_field();
         add(moment_texel(IRRADIANCE_TILE, texel.xy), 0u, irradiance(), rest);
-        add(moment_texel(MEAN_TILE, texel.xy), 0u, mean.radiance, rest);
+        add(moment_texel(MEAN_TILE, texel.xy), 0u, mean_of_field(), rest);
+    }
+    if invocation < HARMONIC_COUNT {
         let before = exp(textureLoad(previous_sum, moment_texel(MEAN_TILE, texel.xy), 0, 0).rgb);
-        let tilt_before = textureLoad(previous_sum, moment_texel(TILT_TILE, texel.xy), 0, 0).rgb;
-        let added = max(mean.radiance, vec3<f32>(DARK)) * rest;
-        let tilt = (before * tilt_before + added * mean.tilt) / (before + added);
-        textureStore(sum, moment_texel(TILT_TILE, texel.xy), 0u, vec4<f32>(tilt, 0.0));
+        let added = max(mean_of_field(), vec3<f32>(DARK)) * rest;
+        let place = moment_texel(FIRST_HARMONIC_TILE + invocation, texel.xy);
+        let harmonic_before = textureLoad(previous_sum, place, 0, 0).rgb;
+        let harmonic = (before * harmonic_before + added * harmonic_of_field(invocation + 1u)) / (before + added);
+        textureStore(sum, place, 0u, vec4<f32>(harmonic, 0.0));
     }
 }

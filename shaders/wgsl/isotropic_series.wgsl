@@ -65,7 +65,8 @@ fn isotropic_along(ray: AirRay, hits_ground: bool) -> Along {
 @compute @workgroup_size(#{INVOCATION_COUNT})
 fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
     let size = vec2<f32>(textureDimensions(isotropic_series));
-    let here = mapping::multiple_scattering_from_unit(mapping::unit_from_texel(texel.xy, size), atmosphere.top_m);
+    let unit = mapping::unit_from_texel(texel.xy, size);
+    let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m, atmosphere.sun_warp);
     let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
     for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
         let direction = direction_of(i, mu_h);

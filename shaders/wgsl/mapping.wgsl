@@ -37,23 +37,17 @@ fn optical_depth_to_unit(altitude_m: f32, mu: f32, radius_m: f32, top_m: f32) ->
 }
 
 // --- Multiple scattering: x = asinh(k mu_s) from its value at the lowest sun to that at the zenith, y = sqrt(h / top).
+//
+// sun_warp: k, which is the larger the sooner night falls on the planet; the value at the lowest sun; and the range from
+// there to the zenith's. The host's MultipleScatteringMapping has them.
 
-// Slope of the warp at the horizon: half of the texels lie within 9 degrees of it.
-const SUN_WARP: f32 = 17.0;
-// sin(-20 degrees): a sun lower than that lights nothing that the table keeps.
-const LOWEST_MU_S: f32 = -0.3420201433;
-
-fn multiple_scattering_from_unit(unit: vec2<f32>, top_m: f32) -> AltitudeCosine {
-    let low = asinh(SUN_WARP * LOWEST_MU_S);
-    let high = asinh(SUN_WARP);
-    let mu_s = sinh(mix(low, high, unit.x)) / SUN_WARP;
-    return AltitudeCosine(top_m * unit.y * unit.y, clamp(mu_s, LOWEST_MU_S, 1.0));
+fn multiple_scattering_from_unit(unit: vec2<f32>, top_m: f32, sun_warp: vec3<f32>) -> AltitudeCosine {
+    let mu_s = sinh(sun_warp.y + sun_warp.z * unit.x) / sun_warp.x;
+    return AltitudeCosine(top_m * unit.y * unit.y, clamp(mu_s, -1.0, 1.0));
 }
 
-fn multiple_scattering_to_unit(altitude_m: f32, mu_s: f32, top_m: f32) -> vec2<f32> {
-    let low = asinh(SUN_WARP * LOWEST_MU_S);
-    let high = asinh(SUN_WARP);
-    let x = (asinh(SUN_WARP * mu_s) - low) / (high - low);
+fn multiple_scattering_to_unit(altitude_m: f32, mu_s: f32, top_m: f32, sun_warp: vec3<f32>) -> vec2<f32> {
+    let x = (asinh(sun_warp.x * mu_s) - sun_warp.y) / sun_warp.z;
     return clamp(vec2<f32>(x, sqrt(max(altitude_m, 0.0) / top_m)), vec2<f32>(0.0), vec2<f32>(1.0));
 }
 

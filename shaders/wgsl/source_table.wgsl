@@ -22,7 +22,7 @@ struct Corners {
 }
 
 fn corners(table_size: vec2<f32>, altitude_m: f32, local: LocalDirections) -> Corners {
-    let place = mapping::multiple_scattering_to_unit(altitude_m, local.mu_s, atmosphere.top_m);
+    let place = mapping::multiple_scattering_to_unit(altitude_m, local.mu_s, atmosphere.top_m, atmosphere.sun_warp);
     let mu_h = horizon_mu(atmosphere.radius_m, altitude_m);
     let row = row_coordinate(local.mu, mu_h, local.mu_s) - 0.5;
     let rows = vec2<f32>(floor(row), floor(row) + 1.0);
@@ -73,6 +73,6 @@ fn tabulated_source(
 
 // Texture coordinates of one of the field's moments, by its tile.
 fn moment_uv(tile: u32, table_size: vec2<f32>, altitude_m: f32, mu_s: f32) -> vec2<f32> {
-    let place = mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m);
+    let place = mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m, atmosphere.sun_warp);
     return tile_uv(place, vec2<f32>(f32(tile), f32(COSINE_COUNT)), table_size);
 }

@@ -3,8 +3,7 @@
 //
 // The sky and the ground around are the field of the multiple-scattering table: its spherical harmonics up to degree 2,
 // convolved with the cosine (Ramamoorthi & Hanrahan 2001, equation 8), which keeps 99 % of what any field does to a
-// Lambertian surface. The result is scaled so that a horizontal surface receives what the table says. A table of the
-// source function keeps the field's mean and tilt alone: the sky is then taken for even around the vertical.
+// Lambertian surface. The result is scaled so that a horizontal surface receives what the table says.
 //
 // Definitions: MULTIPLE_SCATTERING, AIR, SOURCE_FUNCTION.
 
@@ -13,9 +12,9 @@
 #import welkin::mapping
 #import welkin::sky::multiple_scattering_table
 #import welkin::spherical_harmonics::{degree_of, harmonics, COEFFICIENT_COUNT}
-#import welkin::tables::{mean_field, optical_depth_to_top, table_sampler}
+#import welkin::tables::{optical_depth_to_top, table_sampler}
 #ifdef SOURCE_FUNCTION
-#import welkin::source_grid::IRRADIANCE_TILE
+#import welkin::source_grid::{FIRST_HARMONIC_TILE, IRRADIANCE_TILE}
 #import welkin::source_table::moment_uv
 #else
 #import welkin::tables::IRRADIANCE_LAYER
@@ -40,43 +39,45 @@ fn light_transmittance(altitude_m: f32, mu_s: f32, radius_rad: f32) -> vec3<f32>
 // How a Lambertian surface weighs each degree of the harmonics.
 const TRANSFER: array<f32, 3> = array<f32, 3>(PI, 2.0943951, 0.78539816);
 
-#ifdef SOURCE_FUNCTION
-// Irradiance of a field over its mean, on a surface whose normal has the zenith cosine mu; the azimuth is not known.
-fn relative_irradiance(altitude_m: f32, mu_s: f32, mu: f32, cos_phi: f32) -> vec3<f32> {
-    var y = harmonics(mu, cos_phi);
-    let tilt = mean_field(multiple_scattering_table, altitude_m, mu_s).tilt;
-    return max(TRANSFER[0] * y[0] + TRANSFER[1] * y[1] * tilt, vec3<f32>(0.0));
+// Where the table holds the field's k-th harmonic over its mean: coordinates and layer.
+struct Place {
+    uv: vec2<f32>,
+    layer: u32,
 }
 
-fn horizontal_irradiance(altitude_m: f32, mu_s: f32) -> vec3<f32> {
+fn place_of_harmonic(k: u32, altitude_m: f32, mu_s: f32) -> Place {
     let size = vec2<f32>(textureDimensions(multiple_scattering_table));
-    let uv = moment_uv(IRRADIANCE_TILE, size, altitude_m, mu_s);
-    return exp(textureSampleLevel(multiple_scattering_table, table_sampler, uv, 0, 0.0).rgb);
-}
+#ifdef SOURCE_FUNCTION
+    return Place(moment_uv(FIRST_HARMONIC_TILE + k - 1u, size, altitude_m, mu_s), 0u);
 #else
-fn table_uv(altitude_m: f32, mu_s: f32) -> vec2<f32> {
-    let unit = mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m);
-    return mapping::inset(unit, vec2<f32>(textureDimensions(multiple_scattering_table)));
+    let unit = mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m, atmosphere.sun_warp);
+    return Place(mapping::inset(unit, size), k);
+#endif
 }
 
 // Irradiance of the harmonics up to degree 2 over their mean, on a surface whose normal has the zenith cosine mu.
 fn relative_irradiance(altitude_m: f32, mu_s: f32, mu: f32, cos_phi: f32) -> vec3<f32> {
-    let uv = table_uv(altitude_m, mu_s);
     var transfer = TRANSFER;
     var y = harmonics(mu, cos_phi);
     var sum = vec3<f32>(transfer[0] * y[0]);
     for (var k = 1u; k < min(COEFFICIENT_COUNT, 6u); k++) {
-        let coefficient = textureSampleLevel(multiple_scattering_table, table_sampler, uv, k, 0.0).rgb;
+        let place = place_of_harmonic(k, altitude_m, mu_s);
+        let coefficient = textureSampleLevel(multiple_scattering_table, table_sampler, place.uv, place.layer, 0.0).rgb;
         sum += transfer[degree_of(k)] * y[k] * coefficient;
     }
     return max(sum, vec3<f32>(0.0));
 }
 
 fn horizontal_irradiance(altitude_m: f32, mu_s: f32) -> vec3<f32> {
-    let uv = table_uv(altitude_m, mu_s);
-    return exp(textureSampleLevel(multiple_scattering_table, table_sampler, uv, IRRADIANCE_LAYER, 0.0).rgb);
-}
+    let size = vec2<f32>(textureDimensions(multiple_scattering_table));
+#ifdef SOURCE_FUNCTION
+    let place = Place(moment_uv(IRRADIANCE_TILE, size, altitude_m, mu_s), 0u);
+#else
+    let unit = mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m, atmosphere.sun_warp);
+    let place = Place(mapping::inset(unit, size), IRRADIANCE_LAYER);
 #endif
+    return exp(textureSampleLevel(multiple_scattering_table, table_sampler, place.uv, place.layer, 0.0).rgb);
+}
 #endif
 
 // Diffuse irradiance at an altitude under a light of zenith cosine mu_s, on a surface whose normal has the zenith

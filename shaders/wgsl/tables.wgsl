@@ -8,7 +8,7 @@
 #import welkin::mapping
 #import welkin::march::LocalDirections
 #ifdef SOURCE_FUNCTION
-#import welkin::source_grid::{IRRADIANCE_TILE, MEAN_TILE, TILT_TILE}
+#import welkin::source_grid::{FIRST_HARMONIC_TILE, IRRADIANCE_TILE, MEAN_TILE}
 #import welkin::source_table::{moment_uv, tabulated_source}
 #endif
 #import welkin::spherical_harmonics::{COEFFICIENT_COUNT, DEGREE_COUNT, degree_of, harmonics}
@@ -27,10 +27,10 @@ fn optical_depth_to_top(altitude_m: f32, mu: f32) -> vec3<f32> {
     return textureSampleLevel(optical_depth_table, table_sampler, uv, 0.0).rgb;
 }
 
-// Tables of multiply scattered light are of two kinds: welkin::source_table, or they hold, for unit irradiance of the light and at each (altitude, mu_s), the
-// spherical-harmonic coefficients of the radiance seen looking along a direction: layer 0 is ln I_00, layers (l, m)
-// are I_lm / I_00, and the last is ln of the diffuse irradiance on a horizontal plane. The logarithm makes
-// interpolation exact where light falls exponentially: with altitude and into the night.
+// Tables of multiply scattered light are of two kinds: welkin::source_table, or they hold, for unit irradiance of the
+// light and at each (altitude, mu_s), the spherical-harmonic coefficients of the radiance seen looking along a direction:
+// layer 0 is ln I_00, layers (l, m) are I_lm / I_00, and the last is ln of the diffuse irradiance on a horizontal plane.
+// The logarithm makes interpolation exact where light falls exponentially: with altitude and into the night.
 const IRRADIANCE_LAYER: u32 = COEFFICIENT_COUNT;
 
 // Radiance sent into the view direction per metre, 1/m per unit irradiance: sum_c b_c int p_c I dw'.
@@ -43,7 +43,7 @@ fn multiply_scattered_source(
 #ifdef SOURCE_FUNCTION
     return tabulated_source(table, table_sampler, altitude_m, local, density);
 #else
-    let unit = mapping::multiple_scattering_to_unit(altitude_m, local.mu_s, atmosphere.top_m);
+    let unit = mapping::multiple_scattering_to_unit(altitude_m, local.mu_s, atmosphere.top_m, atmosphere.sun_warp);
     let uv = mapping::inset(unit, vec2<f32>(textureDimensions(table)));
     var y = harmonics(local.mu, local.cos_phi);
     var scattering = scattering_by_degree(density);
@@ -74,7 +74,7 @@ fn diffuse_ground_irradiance(table: texture_2d_array<f32>, mu_s: f32) -> vec3<f3
     let uv = moment_uv(IRRADIANCE_TILE, vec2<f32>(textureDimensions(table)), 0.0, mu_s);
     return exp(textureSampleLevel(table, table_sampler, uv, 0, 0.0).rgb);
 #else
-    let unit = mapping::multiple_scattering_to_unit(0.0, mu_s, atmosphere.top_m);
+    let unit = mapping::multiple_scattering_to_unit(0.0, mu_s, atmosphere.top_m, atmosphere.sun_warp);
     let uv = mapping::inset(unit, vec2<f32>(textureDimensions(table)));
     return exp(textureSampleLevel(table, table_sampler, uv, IRRADIANCE_LAYER, 0.0).rgb);
 #endif
@@ -92,11 +92,12 @@ fn mean_field(table: texture_2d_array<f32>, altitude_m: f32, mu_s: f32) -> MeanF
     var field: MeanField;
 #ifdef SOURCE_FUNCTION
     let uv = moment_uv(MEAN_TILE, size, altitude_m, mu_s);
-    let tilt_uv = moment_uv(TILT_TILE, size, altitude_m, mu_s);
+    let tilt_uv = moment_uv(FIRST_HARMONIC_TILE, size, altitude_m, mu_s);
     field.radiance = exp(textureSampleLevel(table, table_sampler, uv, 0, 0.0).rgb);
     field.tilt = textureSampleLevel(table, table_sampler, tilt_uv, 0, 0.0).rgb;
 #else
-    let uv = mapping::inset(mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m), size);
+    let unit = mapping::multiple_scattering_to_unit(altitude_m, mu_s, atmosphere.top_m, atmosphere.sun_warp);
+    let uv = mapping::inset(unit, size);
     // Y_00: the mean of I_00 Y_00.
     field.radiance = 0.282094792 * exp(textureSampleLevel(table, table_sampler, uv, 0, 0.0).rgb);
 #if DEGREE_COUNT >= 3

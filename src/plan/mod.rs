@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 pub use cloud_settings::{CloudScattering, CloudSettings};
 pub use declaration::{Declaration, Fingerprint, Need};
 pub use facts::{ConstituentGroups, Facts, Outputs, SpectralPart, Surface, Viewpoint};
-pub use multiple_scattering::{MultipleScattering, Treatment, expected_ringing};
+pub use multiple_scattering::{MultipleScattering, Treatment, error_in_shadow, expected_ringing};
 use serde::Serialize;
 pub use settings::{Directions, Quality, Settings, SourceGrid};
 

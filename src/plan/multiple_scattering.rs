@@ -87,6 +87,13 @@ pub fn expected_ringing(scatterers: &[&Constituent], top_m: f64, degree_count: u
     (0..BAND_COUNT).map(in_band).fold(0.0, f64::max)
 }
 
+/// How far off single views are whose whole path lies in the planet's shadow, when spherical harmonics of the field end
+/// before `degree_count`: all of their light comes from a narrow arch at the horizon. The worst of the 99th percentiles
+/// of one sun between 92 and 102° that docs/accuracy.md has for clear air.
+pub fn error_in_shadow(degree_count: u32) -> f64 {
+    if degree_count < 5 { 0.31 } else { 0.14 }
+}
+
 impl Treatment {
     /// What is done about what is asked for, and why.
     pub fn choose(settings: &Settings, scatterers: &[&Constituent], top_m: f64) -> (Self, String) {
@@ -102,6 +109,15 @@ impl Treatment {
                 if ringing > limit {
                     let reason = format!(
                         "haze scatters forward, and degrees 0 to {highest} of spherical harmonics would ring by about {estimate}"
+                    );
+                    return (Self::SourceFunction, reason);
+                }
+                let (dark, limit) = (error_in_shadow(settings.degree_count), settings.shadow_limit);
+                if dark > limit {
+                    let reason = format!(
+                        "with degrees 0 to {highest} of spherical harmonics views into the planet's shadow would be off by up to {:.0} % (limit {:.1} %)",
+                        100.0 * dark,
+                        100.0 * limit
                     );
                     return (Self::SourceFunction, reason);
                 }

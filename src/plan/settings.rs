@@ -119,6 +119,10 @@ pub struct Settings {
     /// harmonics: see [`super::expected_ringing`]. A quarter of what the quality promises at the 99th percentile, as the
     /// error there is about three times the expectation.
     pub ringing_limit: f64,
+    /// How far single views into the planet's shadow may be off before the source function takes the place of spherical
+    /// harmonics: see [`super::error_in_shadow`]. What the quality promises there at the 99th percentile; half of it at
+    /// `high` and `ultra`.
+    pub shadow_limit: f64,
     /// Directions of the source function.
     pub source_grid: SourceGrid,
     /// Source function: (sun, altitude).
@@ -146,6 +150,7 @@ impl Settings {
                 orders: 3,
                 multiple_scattering: MultipleScattering::Auto,
                 ringing_limit: 0.015,
+                shadow_limit: 0.4,
                 source_grid: SourceGrid { ground: 4, low: 4, high: 4, azimuths: 8 },
                 source_size: [32, 16],
                 source_orders: 4,
@@ -162,6 +167,7 @@ impl Settings {
                 orders: 3,
                 multiple_scattering: MultipleScattering::Auto,
                 ringing_limit: 0.015,
+                shadow_limit: 0.4,
                 source_grid: SourceGrid { ground: 4, low: 5, high: 5, azimuths: 8 },
                 source_size: [40, 20],
                 source_orders: 4,
@@ -178,6 +184,7 @@ impl Settings {
                 orders: 3,
                 multiple_scattering: MultipleScattering::Auto,
                 ringing_limit: 0.0075,
+                shadow_limit: 0.125,
                 source_grid: SourceGrid { ground: 5, low: 6, high: 5, azimuths: 10 },
                 source_size: [48, 24],
                 source_orders: 5,
@@ -194,6 +201,7 @@ impl Settings {
                 orders: 4,
                 multiple_scattering: MultipleScattering::Auto,
                 ringing_limit: 0.00375,
+                shadow_limit: 0.075,
                 source_grid: SourceGrid { ground: 6, low: 8, high: 6, azimuths: 12 },
                 source_size: [64, 32],
                 source_orders: 6,
@@ -222,6 +230,8 @@ mod tests {
             // Beside an image's side of 4096, 16 KiB of workgroup memory: 32 bytes for each direction.
             assert!(width * grid.azimuths <= 4096 && height * (grid.cosines() + 1) <= 4096, "{quality}");
             assert!(32 * grid.count() <= 16384, "{quality}");
+            // The moments of the field lie in the first tiles of the last row.
+            assert!(grid.azimuths >= 7, "{quality}");
             assert!(settings.source_orders >= 3, "{quality}");
             assert!(settings.orders >= 3, "{quality}: the ratio of orders is constant only after the third");
         }

@@ -9,7 +9,7 @@ mod optical_depth;
 mod sky_view;
 mod slices;
 
-pub use multiple_scattering::{LOWEST_MU_S, MultipleScatteringMapping};
+pub use multiple_scattering::MultipleScatteringMapping;
 pub use optical_depth::OpticalDepthMapping;
 pub use sky_view::{SkyHalf, SkyViewMapping};
 pub use slices::SliceMapping;

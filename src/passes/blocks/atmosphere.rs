@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
+use welkin_lut::mapping::MultipleScatteringMapping;
 use welkin_lut::phase::DropletFit;
 use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
@@ -43,8 +44,8 @@ pub(super) struct ConstituentBlock {
 pub(super) struct AtmosphereHeader {
     pub(super) ground_albedo: [f32; 3],
     pub(super) radius_m: f32,
+    pub(super) sun_warp: [f32; 3],
     pub(super) top_m: f32,
-    pub(super) padding: [f32; 3],
 }
 
 impl PhaseLobeBlock {
@@ -151,8 +152,8 @@ pub fn atmosphere_block(facts: &Facts) -> Vec<u8> {
     let header = AtmosphereHeader {
         ground_albedo: vec3(planet.ground_albedo),
         radius_m: planet.radius_m as f32,
+        sun_warp: vec3(MultipleScatteringMapping::new(planet).sun_warp()),
         top_m: planet.atmosphere_height_m as f32,
-        padding: [0.0; 3],
     };
     let group = |index: usize| facts.profile_groups.get(index).copied().unwrap_or(0);
     let numbered = facts.constituents.iter().enumerate();
