@@ -9,19 +9,15 @@ use std::f64::consts::FRAC_PI_2;
 
 use welkin_lut::{Planet, geometry};
 
+use super::Skipping;
 use crate::scene::DirectionalLight;
-
-/// Discs narrower than this never matter, rad.
-const NARROWEST_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
-
-/// How high above the horizon a disc still matters, in its angular radii: 1° for the sun.
-const HIGHEST_RADII: f64 = 3.75;
 
 /// Whether pixels change when light is averaged over a light's disc, seen from an altitude ≥ 0, m.
 ///
 /// From high up the ground under the horizon lies elsewhere: there the light stands lower by the dip of the horizon.
-pub fn is_wide(light: &DirectionalLight, planet: &Planet, altitude_m: f64) -> bool {
+pub fn is_wide(light: &DirectionalLight, planet: &Planet, altitude_m: f64, skipping: &Skipping) -> bool {
     let radius_rad = light.angular_radius_rad;
     let dip_rad = geometry::horizon_mu(planet.radius_m, altitude_m).clamp(-1.0, 1.0).acos() - FRAC_PI_2;
-    radius_rad >= NARROWEST_RAD && light.direction.elevation_rad <= HIGHEST_RADII * radius_rad + dip_rad
+    radius_rad >= skipping.narrowest_disc_rad
+        && light.direction.elevation_rad <= skipping.beam_above_radii * radius_rad + dip_rad
 }

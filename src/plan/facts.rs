@@ -6,7 +6,7 @@ use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::disc::is_wide;
 use super::faint::{Reach, reach};
-use super::{CloudScattering, PlanError, Settings, Treatment};
+use super::{CloudScattering, PlanError, Settings, Skipping, Treatment};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, GroupColour, Light, Scene, WavelengthGroup};
 
@@ -134,7 +134,7 @@ impl<'a> Facts<'a> {
             return Err(PlanError::Unsupported { what });
         }
         let camera = &scene.camera;
-        let sorted = sort_lights(&shining_lights(scene)?, scene);
+        let sorted = sort_lights(&shining_lights(scene)?, scene, &settings.skipping);
         let groups = groups(&constituents);
         let scatterers = &constituents[..groups.scatterer_count as usize];
         let (treatment, treatment_reason) = Treatment::choose(&settings, scatterers, scene.planet.atmosphere_height_m);
@@ -209,7 +209,7 @@ impl<'a> Facts<'a> {
 
     /// Whether a light's disc is so wide that pixels change when light is averaged over it.
     pub fn is_wide(&self, light: &DirectionalLight) -> bool {
-        is_wide(light, &self.scene.planet, self.observer_altitude_m())
+        is_wide(light, &self.scene.planet, self.observer_altitude_m(), &self.settings.skipping)
     }
 
     /// Degrees of spherical harmonics that the field keeps: one where it counts as isotropic.
@@ -318,10 +318,10 @@ struct SortedLights<'a> {
     left_out: Vec<String>,
 }
 
-fn sort_lights<'a>(shining: &[&'a DirectionalLight], scene: &Scene) -> SortedLights<'a> {
+fn sort_lights<'a>(shining: &[&'a DirectionalLight], scene: &Scene, skipping: &Skipping) -> SortedLights<'a> {
     let mut sorted = SortedLights::default();
     for light in shining {
-        match reach(light, shining, &scene.planet, scene.camera.altitude_m.max(0.0)) {
+        match reach(light, shining, &scene.planet, scene.camera.altitude_m.max(0.0), skipping) {
             Reach::Lit => sorted.lit.push(light),
             Reach::DiscOnly(reason) => {
                 sorted.faint_discs.push(light);

@@ -4,10 +4,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use welkin_lut::{Planet, geometry};
 
+use super::Skipping;
 use crate::scene::DirectionalLight;
-
-/// A light counts as faint when what it lights is below this share of what another lights.
-const FAINT: f64 = 1e-4;
 
 /// Degrees of the light's descent below the horizon over which the sky loses a factor of ten, at least and at most:
 /// clear twilight on Earth loses one in 2 to 3°.
@@ -39,12 +37,18 @@ fn left_over(light: &DirectionalLight, decade_deg: f64) -> f64 {
 }
 
 /// What becomes of a light among all that shine, seen from an altitude ≥ 0, m.
-pub fn reach(light: &DirectionalLight, all: &[&DirectionalLight], planet: &Planet, altitude_m: f64) -> Reach {
+pub fn reach(
+    light: &DirectionalLight,
+    all: &[&DirectionalLight],
+    planet: &Planet,
+    altitude_m: f64,
+    skipping: &Skipping,
+) -> Reach {
     let dip = dip_rad(planet, altitude_m);
     // A view over the horizon leaves the air where the light stands higher by the angle to there, and lights the top
     // of the air while it stands lower than the ground's horizon by the same angle.
     let lowest_rad = dip + 2.0 * dip_rad(planet, planet.atmosphere_height_m) + light.angular_radius_rad;
-    if light.direction.elevation_rad < -lowest_rad {
+    if light.direction.elevation_rad < -lowest_rad * skipping.unseen_depressions {
         let (depression, lowest) = (-light.direction.elevation_rad.to_degrees(), lowest_rad.to_degrees());
         return Reach::Unseen(format!(
             "{} stands {depression:.1}° down and lights no air in view below {lowest:.1}°",
@@ -55,11 +59,11 @@ pub fn reach(light: &DirectionalLight, all: &[&DirectionalLight], planet: &Plane
         return Reach::Lit;
     }
     let most = left_over(light, SLOWEST_DECADE_DEG);
-    let outshines = |other: &&&DirectionalLight| most < FAINT * left_over(other, QUICKEST_DECADE_DEG);
+    let outshines = |other: &&&DirectionalLight| most < skipping.faint_share * left_over(other, QUICKEST_DECADE_DEG);
     match all.iter().find(outshines) {
         Some(other) => Reach::DiscOnly(format!(
-            "{} lights less than {FAINT} of what {} does: only its disc is drawn",
-            light.name, other.name
+            "{} lights less than {} of what {} does: only its disc is drawn",
+            light.name, skipping.faint_share, other.name
         )),
         None => Reach::Lit,
     }

@@ -7,6 +7,7 @@ mod facts;
 mod faint;
 mod multiple_scattering;
 mod settings;
+mod skipping;
 
 use std::collections::BTreeMap;
 
@@ -16,6 +17,7 @@ pub use facts::{ConstituentGroups, Facts, Outputs, SpectralPart, Surface, Viewpo
 pub use multiple_scattering::{MultipleScattering, Treatment, error_in_shadow, expected_ringing};
 use serde::Serialize;
 pub use settings::{Directions, Quality, Settings, SourceGrid};
+pub use skipping::Skipping;
 
 /// Why a scene cannot be planned.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

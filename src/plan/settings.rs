@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{CloudSettings, MultipleScattering};
+use super::{CloudSettings, MultipleScattering, Skipping};
 
 /// How much accuracy a picture is worth. The error of each is measured in docs/accuracy.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -135,6 +135,8 @@ pub struct Settings {
     pub froxel_size: [u32; 3],
     /// Clouds.
     pub clouds: CloudSettings,
+    /// What is left out because it hardly shows.
+    pub skipping: Skipping,
 }
 
 impl Settings {
@@ -157,6 +159,7 @@ impl Settings {
                 sky_view_size: [32, 48],
                 froxel_size: [8, 16, 16],
                 clouds: CloudSettings::of(quality),
+                skipping: Skipping::USUAL,
             },
             Quality::Medium => Self {
                 nodes_per_leg: 10,
@@ -174,6 +177,7 @@ impl Settings {
                 sky_view_size: [48, 96],
                 froxel_size: [12, 24, 24],
                 clouds: CloudSettings::of(quality),
+                skipping: Skipping::USUAL,
             },
             Quality::High => Self {
                 nodes_per_leg: 12,
@@ -191,6 +195,7 @@ impl Settings {
                 sky_view_size: [80, 144],
                 froxel_size: [16, 48, 32],
                 clouds: CloudSettings::of(quality),
+                skipping: Skipping::USUAL,
             },
             Quality::Ultra => Self {
                 nodes_per_leg: 16,
@@ -208,6 +213,7 @@ impl Settings {
                 sky_view_size: [96, 192],
                 froxel_size: [24, 64, 48],
                 clouds: CloudSettings::of(quality),
+                skipping: Skipping::USUAL,
             },
         }
     }

@@ -1,0 +1,32 @@
+//! How readily the plan leaves out what hardly shows.
+
+/// The bounds of the rules that leave something out. Rules for what is not there at all need none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Skipping {
+    /// A light counts as faint when what it lights is below this share of what another lights: only its disc is drawn.
+    pub faint_share: f64,
+    /// A light is not seen when it stands this many times lower than the lowest from which it could light air in view.
+    pub unseen_depressions: f64,
+    /// Discs narrower than this count as beams, rad.
+    pub narrowest_disc_rad: f64,
+    /// A disc counts as a beam where it stands more of its angular radii than this above the horizon: 1° for the sun.
+    pub beam_above_radii: f64,
+}
+
+impl Skipping {
+    /// What no picture shows: `tests/skipping.rs` holds it against [`Skipping::NONE`].
+    pub const USUAL: Self = Self {
+        faint_share: 1e-4,
+        unseen_depressions: 1.0,
+        narrowest_disc_rad: 0.1 * std::f64::consts::PI / 180.0,
+        beam_above_radii: 3.75,
+    };
+
+    /// Everything that is there is computed.
+    pub const NONE: Self = Self {
+        faint_share: 0.0,
+        unseen_depressions: f64::INFINITY,
+        narrowest_disc_rad: f64::MIN_POSITIVE,
+        beam_above_radii: f64::INFINITY,
+    };
+}
