@@ -11,3 +11,4 @@ pub mod reference;
 pub mod renderer;
 pub mod report;
 pub mod scene;
+pub mod shader_export;

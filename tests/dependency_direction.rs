@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The modules of `src/`, lowest first, and the other modules that each may use.
-const MAY_USE: [(&str, &[&str]); 11] = [
+const MAY_USE: [(&str, &[&str]); 12] = [
     ("scene", &[]),
     ("foreground", &["scene"]),
     ("frame", &[]),
@@ -18,6 +18,7 @@ const MAY_USE: [(&str, &[&str]); 11] = [
     ("reference", &["frame", "output", "probe", "scene"]),
     ("report", &["frame", "output", "scene"]),
     ("passes", &["foreground", "gpu", "output", "plan", "probe", "scene"]),
+    ("shader_export", &["passes", "plan"]),
     ("renderer", &["foreground", "frame", "gpu", "passes", "plan", "probe", "scene"]),
 ];
 
@@ -26,7 +27,7 @@ const ONLY_IN: [(&str, &[&str]); 5] = [
     ("ash", &["gpu"]),
     ("gpu_allocator", &["gpu"]),
     ("unsafe", &["gpu"]),
-    ("welkin_shaders", &["gpu", "passes"]),
+    ("welkin_shaders", &["gpu", "passes", "shader_export"]),
     ("clap", &["cli"]),
 ];
 

@@ -43,6 +43,65 @@ pub fn distance_to_shell_from_above(radius_m: f64, altitude_m: f64, mu: f64, she
     Some(gap / (discriminant.sqrt() - b))
 }
 
+/// Length of a view ray's part below the shell at `shell_m`, also when it starts above; `hits_ground` says whether the
+/// ray meets the ground.
+pub fn air_length_m(radius_m: f64, shell_m: f64, altitude_m: f64, mu: f64, hits_ground: bool) -> f64 {
+    let sine = (radius_m + altitude_m) / (radius_m + shell_m) * (1.0 - mu * mu).max(0.0).sqrt();
+    let in_space = altitude_m > shell_m;
+    if in_space && (mu >= 0.0 || sine >= 1.0) {
+        return 0.0;
+    }
+    let start_m = altitude_m.min(shell_m);
+    let start_mu = if in_space { -(1.0 - sine * sine).max(0.0).sqrt() } else { mu };
+    match hits_ground {
+        true => grazing_distance_m(radius_m, start_m, start_mu, 0.0),
+        false => distance_to_shell_from_below(radius_m, start_m, start_mu, shell_m),
+    }
+}
+
+/// Distance to the nearer intersection with a sphere below the ray's start, which the caller knows that the ray meets: a
+/// discriminant that rounding made negative counts as grazing.
+pub fn grazing_distance_m(radius_m: f64, altitude_m: f64, mu: f64, shell_m: f64) -> f64 {
+    let gap = (altitude_m - shell_m) * (2.0 * radius_m + shell_m + altitude_m);
+    let b = (radius_m + altitude_m) * mu;
+    let discriminant = (b * b - gap).max(0.0);
+    gap / (discriminant.sqrt() - b).max(gap.max(0.0).sqrt()).max(f64::MIN_POSITIVE)
+}
+
+/// The part of a ray inside the planet's shadow in parallel light, as distances (start, end) in [0, length]; start ≥ end
+/// where it is lit all along. `mu_s` is the cosine of the light's zenith angle, `nu` that of the angle to the light.
+///
+/// The shadow is a half-infinite cylinder, a convex set: a ray meets it in one interval, whose ends solve
+/// |p_perp(t)|² = R² with p_perp the position's part normal to the light.
+pub fn shadow_interval_m(radius_m: f64, altitude_m: f64, [mu, mu_s, nu]: [f64; 3], length_m: f64) -> [f64; 2] {
+    const LIT: [f64; 2] = [1.0, 0.0];
+    let r = radius_m + altitude_m;
+    let sin2_nu = 1.0 - nu * nu;
+    let half_b = r * (mu - nu * mu_s);
+    let c = altitude_m * (2.0 * radius_m + altitude_m) - r * r * mu_s * mu_s;
+    if sin2_nu < 1e-12 {
+        // Along the light's axis: all of the ray is inside the cylinder or none.
+        return if c < 0.0 && mu_s < 0.0 { [0.0, length_m] } else { LIT };
+    }
+    let discriminant = half_b * half_b - sin2_nu * c;
+    if discriminant <= 0.0 {
+        return LIT;
+    }
+    // Stable quadratic roots: the smaller in magnitude through the product of both.
+    let q = -(half_b + discriminant.sqrt().copysign(half_b));
+    let first = q / sin2_nu;
+    let second = if q == 0.0 { first } else { c / q };
+    let (mut start, mut end) = (first.min(second), first.max(second));
+    // Only the side away from the light is dark: r mu_s + t nu < 0. A ray across the light stays on its side.
+    let crossing = -r * mu_s / if nu.abs() < 1e-20 { 1e-20 } else { nu };
+    if nu > -1e-20 {
+        end = end.min(crossing);
+    } else {
+        start = start.max(crossing);
+    }
+    [start.max(0.0), end.min(length_m)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -51,7 +51,10 @@ fn shader_defs(definitions: &Definitions) -> HashMap<String, ShaderDefValue> {
 
 /// The import paths that a source needs, each after those that it needs itself. Imports of unknown modules are left
 /// out here: naga_oil reports them with their place.
-fn needed_modules<'a>(text: &str, modules: &BTreeMap<&'a str, (String, &'a str)>) -> Result<Vec<&'a str>, ShaderError> {
+pub(crate) fn needed_modules<'a>(
+    text: &str,
+    modules: &BTreeMap<&'a str, (String, &'a str)>,
+) -> Result<Vec<&'a str>, ShaderError> {
     fn visit<'a>(
         text: &str,
         modules: &BTreeMap<&'a str, (String, &'a str)>,

@@ -52,6 +52,16 @@ pub enum ShaderError {
         /// What is not served, and what is.
         reason: String,
     },
+    /// naga could not write a valid module in another language.
+    #[error("{file}: cannot be written as {language}: {message}")]
+    Export {
+        /// The pass's file.
+        file: String,
+        /// The language's name.
+        language: &'static str,
+        /// naga's message.
+        message: String,
+    },
     /// naga could not write SPIR-V for a valid module.
     #[error("{file}: {message}")]
     Spirv {

@@ -39,6 +39,11 @@ pub enum BindingKind {
         /// Its shape.
         dimension: Dimension,
     },
+    /// A texture with its sampler, as GLSL has them; WGSL has none.
+    CombinedTexture {
+        /// Its shape.
+        dimension: Dimension,
+    },
     /// A storage texture.
     StorageTexture {
         /// Texel format.

@@ -37,6 +37,8 @@ pub struct Shader {
     /// The resources that the entry point uses, in the order of group and index.
     pub bindings: Vec<Binding>,
     structs: BTreeMap<String, StructLayout>,
+    /// Whether naga has made the SPIR-V, from a module that it has validated.
+    pub(crate) trusted: bool,
 }
 
 /// Compiles a pass that is embedded in this crate.
@@ -54,22 +56,27 @@ impl Shader {
     /// Any [`ShaderError`] but [`ShaderError::Unreadable`]; what is wrong in the WGSL comes with file, line and column,
     /// also where the fault is in an imported module.
     pub fn from_sources(sources: &Sources, pass: &str, definitions: &Definitions) -> Result<Self, ShaderError> {
-        let (file, mut module) = compose::compose(sources, pass, definitions)?;
-        let entry =
-            module.entry_points.iter().find(|entry| entry.name == "main" && entry.stage == ShaderStage::Compute);
-        let Some(entry) = entry.cloned() else { return Err(ShaderError::NoEntryPoint { file }) };
-        module.entry_points = vec![entry.clone()];
+        let Entry { file, module, info, structs } = Entry::of(sources, pass, definitions)?;
+        let entry = &module.entry_points[0];
         let spirv_error = |message: String| ShaderError::Spirv { file: file.clone(), message };
-        let structs = reflect::structs(&module).map_err(spirv_error)?.into_iter().collect();
-        compact(&mut module, KeepUnused::No);
-        let info = Validator::new(ValidationFlags::all(), naga::valid::Capabilities::default())
-            .validate(&module)
-            .map_err(|error| spirv_error(error.to_string()))?;
         let uses = info.get_entry_point(0);
         let bindings = reflect::bindings(&file, &module, |variable| !uses[variable].is_empty())?;
         let spirv = spirv(&module, &info).map_err(|error| spirv_error(error.to_string()))?;
         let name = pass.to_owned();
-        Ok(Self { name, spirv, entry_point: entry.name, workgroup_size: entry.workgroup_size, bindings, structs })
+        let entry_point = entry.name.clone();
+        Ok(Self { name, spirv, entry_point, workgroup_size: entry.workgroup_size, bindings, structs, trusted: true })
+    }
+
+    /// A compute shader that another compiler has made. Nothing is checked, so that a host can only run it where it
+    /// answers for it.
+    pub fn foreign(name: &str, spirv: Vec<u32>, workgroup_size: [u32; 3], bindings: Vec<Binding>) -> Self {
+        let (name, entry_point) = (name.to_owned(), "main".to_owned());
+        Self { name, spirv, entry_point, workgroup_size, bindings, structs: BTreeMap::new(), trusted: false }
+    }
+
+    /// Whether this crate has compiled it.
+    pub fn is_trusted(&self) -> bool {
+        self.trusted
     }
 
     /// The layout of a WGSL struct that the pass or a module it imports declares, by its name.
@@ -78,7 +85,36 @@ impl Shader {
     }
 }
 
-fn spirv(module: &naga::Module, info: &ModuleInfo) -> Result<Vec<u32>, spv::Error> {
+/// A pass's entry point with what it uses, valid by naga's rules.
+pub(crate) struct Entry {
+    pub(crate) file: String,
+    pub(crate) module: naga::Module,
+    pub(crate) info: ModuleInfo,
+    structs: BTreeMap<String, StructLayout>,
+}
+
+impl Entry {
+    pub(crate) fn of(sources: &Sources, pass: &str, definitions: &Definitions) -> Result<Self, ShaderError> {
+        let (file, mut module) = compose::compose(sources, pass, definitions)?;
+        let entry =
+            module.entry_points.iter().find(|entry| entry.name == "main" && entry.stage == ShaderStage::Compute);
+        let Some(entry) = entry.cloned() else { return Err(ShaderError::NoEntryPoint { file }) };
+        module.entry_points = vec![entry];
+        let spirv_error = |message: String| ShaderError::Spirv { file: file.clone(), message };
+        let structs = reflect::structs(&module).map_err(spirv_error)?.into_iter().collect();
+        compact(&mut module, KeepUnused::No);
+        let info = validate(&module).map_err(spirv_error)?;
+        Ok(Self { file, module, info, structs })
+    }
+}
+
+/// Checks a module by naga's rules.
+pub(crate) fn validate(module: &naga::Module) -> Result<ModuleInfo, String> {
+    let mut validator = Validator::new(ValidationFlags::all(), naga::valid::Capabilities::default());
+    validator.validate(module).map_err(|error| error.to_string())
+}
+
+pub(crate) fn spirv(module: &naga::Module, info: &ModuleInfo) -> Result<Vec<u32>, spv::Error> {
     let options = spv::Options {
         lang_version: (1, 3),
         flags: spv::WriterFlags::DEBUG,

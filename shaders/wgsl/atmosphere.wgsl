@@ -13,6 +13,8 @@
 //   LOBE_COUNT          lobes of the most complex phase function
 //   PROFILE_GROUP_COUNT groups of scatterers that share a density profile
 
+#import welkin::phase::{lobe_per_sr, PhaseLobe}
+
 const PI: f32 = 3.14159265358979;
 const CONSTITUENT_COUNT: u32 = #{CONSTITUENT_COUNT}u;
 const SCATTERING_EXPONENTIAL_END: u32 = #{SCATTERING_EXPONENTIAL_END}u;
@@ -26,19 +28,6 @@ const SCATTERER_SLOTS: u32 = max(SCATTERER_COUNT, 1u);
 const LOBE_COUNT: u32 = #{LOBE_COUNT}u;
 const MAX_LOBES: u32 = 2u;
 const PROFILE_GROUP_COUNT: u32 = #{PROFILE_GROUP_COUNT}u;
-
-// scale * (1 + quadratic nu²) * (gap + slope (1 - nu))^(-exponent): Henyey-Greenstein, Rayleigh, Cornette-Shanks,
-// Draine and Schlick are all of this form. gap is (1 - g)² exactly, so that the peak survives f32.
-struct PhaseLobe {
-    scale_per_sr: f32,
-    quadratic: f32,
-    gap: f32,
-    slope: f32,
-    exponent: f32,
-    padding_a: f32,
-    padding_b: f32,
-    padding_c: f32,
-}
 
 struct Constituent {
     scattering_per_m: vec3<f32>,
@@ -125,12 +114,6 @@ fn extinction_at(altitude_m: f32) -> vec3<f32> {
         extinction += density[i] * atmosphere.constituents[i].extinction_per_m;
     }
     return extinction;
-}
-
-// One lobe's part of a phase function, 1/sr.
-fn lobe_per_sr(lobe: PhaseLobe, nu: f32) -> f32 {
-    let base = lobe.gap + lobe.slope * (1.0 - nu);
-    return lobe.scale_per_sr * (1.0 + lobe.quadratic * nu * nu) * exp2(-lobe.exponent * log2(base));
 }
 
 // P(nu) of a constituent, 1/sr; nu = 1 is forward.

@@ -9,13 +9,14 @@
 // Definitions: CLOUD_NEAR_SAMPLES, looked at between a sample and where the grid of depths takes over; CLOUD_TERM_COUNT; CLOUD_ORDINATES (light scattered many times is
 // solved for), of the light ORDINATES_LIGHT.
 
-#import welkin::atmosphere::{atmosphere, lobe_per_sr, PhaseLobe}
+#import welkin::atmosphere::atmosphere
 #import welkin::cloud_field::{cloud_layers, layer_density, CLOUD_LAYER_COUNT, CLOUD_LAYER_SLOTS}
 #import welkin::cloud_grid::{cell_m, grid_sample, level_of, local_direction, Part}
 #import welkin::cloud_matter::{cloud_matter, CloudMatter}
 #import welkin::geometry::horizon_mu
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::ordinates_light::scattered_light
+#import welkin::phase::{lobe_per_sr, PhaseLobe}
 #import welkin::sky::multiple_scattering_table
 #import welkin::tables::{mean_field, optical_depth_to_top, table_sampler}
 

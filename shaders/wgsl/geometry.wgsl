@@ -42,6 +42,22 @@ fn distance_to_shell_from_above(radius_m: f32, altitude_m: f32, mu: f32, shell_m
     return gap / max(sqrt(discriminant) - b, max(sqrt(gap), 1e-20));
 }
 
+// Length of a view ray's part below the shell at top_m, m, also when it starts above; the caller knows whether the ray
+// meets the ground.
+fn air_length_m(radius_m: f32, top_m: f32, altitude_m: f32, mu: f32, hits_ground: bool) -> f32 {
+    let sine = (radius_m + altitude_m) / (radius_m + top_m) * sqrt(max(1.0 - mu * mu, 0.0));
+    let in_space = altitude_m > top_m;
+    if in_space && (mu >= 0.0 || sine >= 1.0) {
+        return 0.0;
+    }
+    let start_m = min(altitude_m, top_m);
+    let start_mu = select(mu, -sqrt(max(1.0 - sine * sine, 0.0)), in_space);
+    if hits_ground {
+        return distance_to_shell_from_above(radius_m, start_m, start_mu, 0.0);
+    }
+    return distance_to_shell_from_below(radius_m, start_m, start_mu, top_m);
+}
+
 // The part of a ray inside the planet's shadow, as distances (start, end) in [0, length_m]; start >= end when lit.
 //
 // The shadow of a sphere in parallel light is a half-infinite cylinder, a convex set: a ray meets it in one interval,

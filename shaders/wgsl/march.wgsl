@@ -124,19 +124,7 @@ fn view_ray(altitude_m: f32, mu: f32, mu_s: f32, nu: f32, hits_ground: bool) -> 
 
 // Length of a view ray's part inside the air, m: that of view_ray, without what only a quadrature needs.
 fn air_length_m(altitude_m: f32, mu: f32, hits_ground: bool) -> f32 {
-    let radius_m = atmosphere.radius_m;
-    let top_m = atmosphere.top_m;
-    let sine = (radius_m + altitude_m) / (radius_m + top_m) * sqrt(max(1.0 - mu * mu, 0.0));
-    let in_space = altitude_m > top_m;
-    if in_space && (mu >= 0.0 || sine >= 1.0) {
-        return 0.0;
-    }
-    let start_m = min(altitude_m, top_m);
-    let start_mu = select(mu, -sqrt(max(1.0 - sine * sine, 0.0)), in_space);
-    if hits_ground {
-        return geometry::distance_to_shell_from_above(radius_m, start_m, start_mu, 0.0);
-    }
-    return geometry::distance_to_shell_from_below(radius_m, start_m, start_mu, top_m);
+    return geometry::air_length_m(atmosphere.radius_m, atmosphere.top_m, altitude_m, mu, hits_ground);
 }
 
 // Where the tables of an observer are filled: some way off the ground and below the top, where rays that leave at once

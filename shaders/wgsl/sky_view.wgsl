@@ -4,65 +4,15 @@
 // pixel, by welkin::sky: what remains is smooth, and a small table is enough even around the sun. So is the length of
 // air that a ray passes, whose kink at the horizontal and zero at the air's limb no table could hold.
 
-#import welkin::atmosphere::{atmosphere, densities, SCATTERER_COUNT, SCATTERER_SLOTS}
+#import welkin::atmosphere::SCATTERER_COUNT
 #import welkin::disc::{beam_count, beam_mu_s, beam_weight}
 #import welkin::mapping
-#import welkin::march::{
-    air_length_m, cut_at_shadow, leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, table_altitude_m,
-    view_ray, AirRay, LEG_COUNT, NODE_COUNT
-}
+#import welkin::march::{air_length_m, cut_at_shadow, table_altitude_m, view_ray}
 #import welkin::observer::{light_mu_s, observer}
 #import welkin::sky::{layer_of, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER}
-#import welkin::tables::{multiply_scattered_source, optical_depth_to_top}
+#import welkin::view_integrals::{integrate, logarithm, Integrals}
 
 @group(0) @binding(8) var sky_view_image: texture_storage_2d_array<rgba32float, write>;
-
-// Below this, light is dark; it keeps logarithms finite.
-const DARK: f32 = 1e-30;
-
-struct Integrals {
-    // int b T T_light dt of each scatterer: its phase function is missing.
-    single: array<vec3<f32>, SCATTERER_SLOTS>,
-    // Multiply scattered radiance.
-    multiple: vec3<f32>,
-}
-
-fn integrate(ray: AirRay) -> Integrals {
-    var sum: Integrals;
-    var tau = vec3<f32>(0.0);
-    for (var i = 0u; i < LEG_COUNT; i++) {
-        var leg = leg_of(ray, i);
-        if leg_is_empty(leg) {
-            continue;
-        }
-        for (var n = 0u; n < NODE_COUNT; n++) {
-            let node = leg_advance(&leg, ray, n, &tau);
-            let local = local_directions(ray, node);
-            var density = densities(node.altitude_m);
-#ifdef MULTIPLE_SCATTERING
-            let source = multiply_scattered_source(multiple_scattering_table, node.altitude_m, local, density);
-            sum.multiple += node.weight_m * exp(-tau) * source;
-#endif
-            if leg.dark {
-                continue;
-            }
-            let lit = node.weight_m * exp(-tau - optical_depth_to_top(node.altitude_m, local.mu_s));
-            for (var c = 0u; c < SCATTERER_COUNT; c++) {
-                sum.single[c] += density[c] * lit;
-            }
-        }
-        leg_finish(&leg, ray, &tau);
-    }
-    for (var c = 0u; c < SCATTERER_COUNT; c++) {
-        sum.single[c] *= atmosphere.constituents[c].scattering_per_m;
-    }
-    return sum;
-}
-
-// Light falls exponentially into the planet's shadow and towards space; its logarithm is what interpolates well.
-fn logarithm(light: vec3<f32>) -> vec3<f32> {
-    return log(max(light, vec3<f32>(DARK)));
-}
 
 // x, y: direction; z: which half of the view sphere, of which light.
 @compute @workgroup_size(8, 8)
@@ -82,7 +32,12 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
         let mu_s = beam_mu_s(light, beam, light_mu_s(light));
         let sines = sin(view.zenith_rad) * sqrt(max(1.0 - mu_s * mu_s, 0.0));
         let nu = clamp(mu * mu_s + sines * cos(view.azimuth_rad), -1.0, 1.0);
-        var part = integrate(cut_at_shadow(view_ray(altitude_m, mu, mu_s, nu, below_horizon)));
+        let ray = cut_at_shadow(view_ray(altitude_m, mu, mu_s, nu, below_horizon));
+#ifdef MULTIPLE_SCATTERING
+        var part = integrate(ray, multiple_scattering_table);
+#else
+        var part = integrate(ray);
+#endif
         let weight = beam_weight(light, beam);
         sum.multiple += weight * part.multiple;
         for (var c = 0u; c < SCATTERER_COUNT; c++) {

@@ -14,6 +14,7 @@ mod probe;
 mod reference;
 mod render;
 mod schema;
+mod shaders;
 mod slab;
 mod solver;
 mod spectrum;
@@ -47,6 +48,7 @@ enum Command {
     Reference(reference::Arguments),
     Render(render::Arguments),
     Schema(schema::Arguments),
+    Shaders(shaders::Arguments),
     Slab(slab::Arguments),
 }
 
@@ -61,6 +63,7 @@ pub fn run() -> ExitCode {
         Command::Reference(arguments) => reference::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
+        Command::Shaders(arguments) => shaders::run(&arguments),
         Command::Slab(arguments) => slab::run(&arguments),
     };
     match outcome.and_then(|()| backend::check_validation()) {

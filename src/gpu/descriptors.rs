@@ -53,6 +53,11 @@ impl Descriptors {
                 (vk::DescriptorBufferInfo::default().range(vk::WHOLE_SIZE), Default::default());
             match bound.resource {
                 Resource::Buffer(resource) => buffer.buffer = resource.0.raw,
+                Resource::Sampled(resource, sampler) => {
+                    let layout = bound.needs.map_or(vk::ImageLayout::UNDEFINED, |needs| needs.layout);
+                    image = vk::DescriptorImageInfo::default().image_view(resource.0.view).image_layout(layout);
+                    image = image.sampler(sampler.0.raw);
+                }
                 Resource::Data(_) => buffer.buffer = data.next().expect("one buffer for each data binding").raw,
                 Resource::Image(resource) => {
                     let layout = bound.needs.map_or(vk::ImageLayout::UNDEFINED, |needs| needs.layout);
@@ -67,7 +72,7 @@ impl Descriptors {
             let (buffers, images) = ([buffer], [image]);
             let write = match bound.resource {
                 Resource::Buffer(_) | Resource::Data(_) => write.buffer_info(&buffers),
-                Resource::Image(_) | Resource::Sampler(_) => write.image_info(&images),
+                Resource::Image(_) | Resource::Sampler(_) | Resource::Sampled(..) => write.image_info(&images),
             };
             // SAFETY: the sets are new, and kinds have been checked against the pass's declaration.
             unsafe { self.context.device.update_descriptor_sets(&[write], &[]) };

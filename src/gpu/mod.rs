@@ -140,6 +140,22 @@ impl Gpu {
     /// # Errors
     /// When the pass needs more than the device or [`MAX_UNIFORM_BUFFERS`] allow.
     pub fn pipeline(&self, shader: &Shader) -> Result<Pipeline, GpuError> {
+        if !shader.is_trusted() {
+            let reason = "another compiler has made it; see `Gpu::foreign_pipeline`".to_owned();
+            return Err(GpuError::Pipeline { pass: shader.name.clone(), reason });
+        }
+        PipelineInner::new(&self.0, shader).map(|inner| Pipeline(Arc::new(inner)))
+    }
+
+    /// A pipeline for a shader that another compiler has made ([`Shader::foreign`]).
+    ///
+    /// # Errors
+    /// As [`Gpu::pipeline`].
+    ///
+    /// # Safety
+    /// The SPIR-V is valid for Vulkan 1.3, has a compute entry point `main` of this workgroup size and uses just these
+    /// bindings.
+    pub unsafe fn foreign_pipeline(&self, shader: &Shader) -> Result<Pipeline, GpuError> {
         PipelineInner::new(&self.0, shader).map(|inner| Pipeline(Arc::new(inner)))
     }
 

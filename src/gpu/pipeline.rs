@@ -117,6 +117,7 @@ pub(crate) fn descriptor_type(kind: &BindingKind) -> vk::DescriptorType {
         BindingKind::UniformBuffer { .. } => vk::DescriptorType::UNIFORM_BUFFER,
         BindingKind::StorageBuffer { .. } => vk::DescriptorType::STORAGE_BUFFER,
         BindingKind::SampledTexture { .. } => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::CombinedTexture { .. } => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         BindingKind::StorageTexture { .. } => vk::DescriptorType::STORAGE_IMAGE,
         BindingKind::Sampler => vk::DescriptorType::SAMPLER,
     }
@@ -127,7 +128,7 @@ fn compute_pipeline(context: &Context, shader: &Shader, layout: vk::PipelineLayo
     let entry = std::ffi::CString::new(shader.entry_point.as_str()).map_err(|error| refuse(error.to_string()))?;
     let code = vk::ShaderModuleCreateInfo::default().code(&shader.spirv);
     let device = &context.device;
-    // SAFETY: the SPIR-V is naga's, from a module that it has validated.
+    // SAFETY: the SPIR-V is naga's, from a module that it has validated, or the host answers for it.
     let module = unsafe { device.create_shader_module(&code, None) }.during("vkCreateShaderModule")?;
     let stage =
         vk::PipelineShaderStageCreateInfo::default().stage(vk::ShaderStageFlags::COMPUTE).module(module).name(&entry);

@@ -225,7 +225,7 @@ impl Commands {
     /// The state of an image or buffer in this recording, which starts as what has been submitted before.
     fn state(&mut self, resource: Resource) -> Option<&mut State> {
         match resource {
-            Resource::Image(image) => {
+            Resource::Image(image) | Resource::Sampled(image, _) => {
                 let start = || (image.clone(), *lock(&image.0.state));
                 Some(&mut self.images.entry(image.0.raw).or_insert_with(start).1)
             }
@@ -240,7 +240,7 @@ impl Commands {
     fn check_written(&mut self, pass: &str, bound: &[Bound]) -> Result<(), GpuError> {
         for bound in bound.iter().filter(|bound| bound.only_reads()) {
             let resource = match bound.resource {
-                Resource::Image(image) => image.name(),
+                Resource::Image(image) | Resource::Sampled(image, _) => image.name(),
                 Resource::Buffer(buffer) => buffer.name(),
                 Resource::Data(_) | Resource::Sampler(_) => continue,
             };
@@ -270,13 +270,13 @@ impl Commands {
     fn barriers(&mut self, bound: &[Bound]) -> Barriers {
         let mut barriers = Barriers::default();
         for Bound { resource, needs, .. } in bound {
-            if let Resource::Sampler(sampler) = resource {
+            if let Resource::Sampler(sampler) | Resource::Sampled(_, sampler) = resource {
                 self.kept.samplers.push((*sampler).clone());
             }
             let Some(next): Option<Use> = *needs else { continue };
             let Some(barrier) = self.state(*resource).and_then(|state| state.next(next)) else { continue };
             match resource {
-                Resource::Image(image) => barriers.image(image.0.raw, barrier),
+                Resource::Image(image) | Resource::Sampled(image, _) => barriers.image(image.0.raw, barrier),
                 _ => barriers.buffer(barrier),
             }
         }

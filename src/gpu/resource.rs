@@ -15,6 +15,8 @@ use super::sampler::Sampler;
 pub enum Resource<'a> {
     /// A sampled or storage texture.
     Image(&'a GpuImage),
+    /// A sampled texture with its sampler.
+    Sampled(&'a GpuImage, &'a Sampler),
     /// A uniform or storage buffer.
     Buffer(&'a GpuBuffer),
     /// The content of a uniform buffer for this one dispatch; copied at once.
@@ -31,6 +33,7 @@ impl<'a> Resource<'a> {
 
     fn describe(&self) -> String {
         match self {
+            Self::Sampled(image, _) => format!("the image `{}` ({:?}) with a sampler", image.name(), image.shape()),
             Self::Image(image) => format!("the image `{}` ({:?}, {:?})", image.name(), image.shape(), image.format()),
             Self::Buffer(buffer) => {
                 format!("the {:?} buffer `{}` ({} bytes)", buffer.kind(), buffer.name(), buffer.bytes())
@@ -57,8 +60,12 @@ impl Bound<'_> {
 
     /// Whether two variables share a resource in a way that no barrier can order.
     fn conflicts(&self, other: &Self) -> bool {
+        let image = |resource: Resource| match resource {
+            Resource::Image(image) | Resource::Sampled(image, _) => Some(image.0.raw),
+            _ => None,
+        };
         let same = match (self.resource, other.resource) {
-            (Resource::Image(a), Resource::Image(b)) => a.0.raw == b.0.raw,
+            (a, b) if image(a).is_some() => image(a) == image(b),
             (Resource::Buffer(a), Resource::Buffer(b)) => a.0.raw == b.0.raw,
             _ => false,
         };
@@ -124,6 +131,9 @@ fn fits(kind: &BindingKind, resource: &Resource) -> bool {
         (&BindingKind::StorageTexture { format, dimension, .. }, Resource::Image(image)) => {
             image.shape().dimension() == dimension && image.format().storage() == format
         }
+        (&BindingKind::CombinedTexture { dimension }, Resource::Sampled(image, _)) => {
+            image.shape().dimension() == dimension
+        }
         (BindingKind::Sampler, Resource::Sampler(_)) => true,
         _ => false,
     }
@@ -138,7 +148,7 @@ fn needs(kind: &BindingKind) -> Option<Use> {
     Some(match *kind {
         BindingKind::UniformBuffer { .. } => Use::compute(Memory::UNIFORM_READ, Memory::NONE, Layout::UNDEFINED),
         BindingKind::StorageBuffer { writable, .. } => storage(true, writable, Layout::UNDEFINED),
-        BindingKind::SampledTexture { .. } => {
+        BindingKind::SampledTexture { .. } | BindingKind::CombinedTexture { .. } => {
             Use::compute(Memory::SHADER_SAMPLED_READ, Memory::NONE, Layout::SHADER_READ_ONLY_OPTIMAL)
         }
         BindingKind::StorageTexture { access, .. } => {
@@ -159,6 +169,7 @@ fn describe(kind: &BindingKind) -> String {
         BindingKind::UniformBuffer { size } => format!("a uniform buffer of {size} bytes"),
         BindingKind::StorageBuffer { minimum_size, .. } => format!("a storage buffer of at least {minimum_size} bytes"),
         BindingKind::SampledTexture { dimension } => format!("a {} texture", shape(dimension)),
+        BindingKind::CombinedTexture { dimension } => format!("a {} texture with a sampler", shape(dimension)),
         BindingKind::StorageTexture { format, dimension, .. } => {
             format!("a {} storage texture of {format:?}", shape(dimension))
         }

@@ -10,6 +10,7 @@ mod henyey_greenstein;
 mod henyey_greenstein_draine;
 mod inversion;
 mod isotropic;
+mod lobe;
 mod monotone_cubic;
 mod quadrature;
 mod rayleigh;
@@ -19,6 +20,7 @@ mod tabulated;
 use std::sync::Arc;
 
 pub use henyey_greenstein_draine::DropletFit;
+pub use lobe::PhaseLobe;
 pub use tabulated::TabulatedPhase;
 
 /// A phase function P(cos θ), 1/sr.

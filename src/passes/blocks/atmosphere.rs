@@ -1,10 +1,8 @@
 //! The medium and the planet as the shaders read them.
 
-use std::f64::consts::PI;
-
 use bytemuck::{Pod, Zeroable};
 use welkin_lut::mapping::MultipleScatteringMapping;
-use welkin_lut::phase::DropletFit;
+use welkin_lut::phase::PhaseLobe;
 use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::vec3;
@@ -49,20 +47,6 @@ pub(super) struct AtmosphereHeader {
 }
 
 impl PhaseLobeBlock {
-    /// Draine's function, of which Rayleigh's, Henyey-Greenstein's and Cornette-Shanks' are special cases.
-    fn draine(weight: f64, g: f64, alpha: f64) -> Self {
-        let norm = 4.0 * PI * (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
-        Self {
-            scale_per_sr: (weight * (1.0 - g * g) / norm) as f32,
-            quadratic: alpha as f32,
-            // 1 + g² - 2gν = (1 - g)² + 2g (1 - ν): the square is taken in f64, where it keeps its digits.
-            gap: ((1.0 - g) * (1.0 - g)) as f32,
-            slope: (2.0 * g) as f32,
-            exponent: 1.5,
-            padding: [0.0; 3],
-        }
-    }
-
     /// A lobe that is not there must still have a base whose logarithm is finite.
     pub(super) const ABSENT: Self =
         Self { scale_per_sr: 0.0, quadratic: 0.0, gap: 1.0, slope: 0.0, exponent: 0.0, padding: [0.0; 3] };
@@ -71,44 +55,30 @@ impl PhaseLobeBlock {
     pub(super) fn times(self, strength: f64) -> Self {
         Self { scale_per_sr: (f64::from(self.scale_per_sr) * strength) as f32, ..self }
     }
+}
 
-    fn schlick(k: f64) -> Self {
+impl From<PhaseLobe> for PhaseLobeBlock {
+    fn from(lobe: PhaseLobe) -> Self {
         Self {
-            scale_per_sr: ((1.0 - k * k) / (4.0 * PI)) as f32,
-            quadratic: 0.0,
-            gap: (1.0 - k) as f32,
-            slope: k as f32,
-            exponent: 2.0,
+            scale_per_sr: lobe.scale_per_sr as f32,
+            quadratic: lobe.quadratic as f32,
+            gap: lobe.gap as f32,
+            slope: lobe.slope as f32,
+            exponent: lobe.exponent as f32,
             padding: [0.0; 3],
         }
     }
 }
 
-/// The lobes of a phase function that has a closed form.
+/// The lobes of a phase function that has a closed form. The plan refuses tables; a constituent that only absorbs may
+/// carry one, and nobody reads it.
 fn lobes(phase: &PhaseFunction) -> Vec<PhaseLobeBlock> {
     scaled_lobes(phase, 1.0)
 }
 
 /// The same with a factor on the asymmetry of every lobe.
 pub(super) fn scaled_lobes(phase: &PhaseFunction, factor: f64) -> Vec<PhaseLobeBlock> {
-    let draine = |weight, g: f64, alpha| PhaseLobeBlock::draine(weight, g * factor, alpha);
-    match *phase {
-        PhaseFunction::Isotropic => vec![draine(1.0, 0.0, 0.0)],
-        PhaseFunction::Rayleigh => vec![draine(1.0, 0.0, 1.0)],
-        PhaseFunction::HenyeyGreenstein { g } => vec![draine(1.0, g, 0.0)],
-        PhaseFunction::DoubleHenyeyGreenstein { weight, g1, g2 } => {
-            vec![draine(weight, g1, 0.0), draine(1.0 - weight, g2, 0.0)]
-        }
-        PhaseFunction::Schlick { k } => vec![PhaseLobeBlock::schlick(k * factor)],
-        PhaseFunction::CornetteShanks { g } => vec![draine(1.0, g, 1.0)],
-        PhaseFunction::Draine { g, alpha } => vec![draine(1.0, g, alpha)],
-        PhaseFunction::HenyeyGreensteinDraine { droplet_diameter_um } => {
-            let fit = DropletFit::new(droplet_diameter_um);
-            vec![draine(1.0 - fit.weight_draine, fit.g_hg, 0.0), draine(fit.weight_draine, fit.g_draine, fit.alpha)]
-        }
-        // The plan refuses tables; a constituent that only absorbs may carry one, and nobody reads it.
-        PhaseFunction::Tabulated(_) => vec![],
-    }
+    phase.scaled_lobes(factor).into_iter().map(PhaseLobeBlock::from).collect()
 }
 
 /// Lobes of the most complex phase function among the scatterers.

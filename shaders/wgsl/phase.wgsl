@@ -1,0 +1,21 @@
+#define_import_path welkin::phase
+// Phase functions in closed form, as lobes.
+
+// scale * (1 + quadratic nu²) * (gap + slope (1 - nu))^(-exponent): Henyey-Greenstein, Rayleigh, Cornette-Shanks,
+// Draine and Schlick are all of this form. gap is (1 - g)² exactly, so that the peak survives f32.
+struct PhaseLobe {
+    scale_per_sr: f32,
+    quadratic: f32,
+    gap: f32,
+    slope: f32,
+    exponent: f32,
+    padding_a: f32,
+    padding_b: f32,
+    padding_c: f32,
+}
+
+// One lobe's part of a phase function, 1/sr; nu = 1 is forward.
+fn lobe_per_sr(lobe: PhaseLobe, nu: f32) -> f32 {
+    let base = lobe.gap + lobe.slope * (1.0 - nu);
+    return lobe.scale_per_sr * (1.0 + lobe.quadratic * nu * nu) * exp2(-lobe.exponent * log2(base));
+}

@@ -1,0 +1,62 @@
+#define_import_path welkin::view_integrals
+// The integrals along a view ray that tables of the sky are made of, for unit irradiance of the light.
+//
+// Definitions: MULTIPLE_SCATTERING.
+
+#import welkin::atmosphere::{atmosphere, densities, SCATTERER_COUNT, SCATTERER_SLOTS}
+#import welkin::march::{
+    leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, AirRay, LEG_COUNT, NODE_COUNT
+}
+#import welkin::tables::{multiply_scattered_source, optical_depth_to_top}
+
+// Below this, light is dark; it keeps logarithms finite.
+const DARK: f32 = 1e-30;
+
+struct Integrals {
+    // int b T T_light dt of each scatterer: its phase function is missing.
+    single: array<vec3<f32>, SCATTERER_SLOTS>,
+    // Multiply scattered radiance.
+    multiple: vec3<f32>,
+}
+
+// A table that nothing reads must not be asked for.
+#ifdef MULTIPLE_SCATTERING
+fn integrate(ray: AirRay, table: texture_2d_array<f32>) -> Integrals {
+#else
+fn integrate(ray: AirRay) -> Integrals {
+#endif
+    var sum: Integrals;
+    var tau = vec3<f32>(0.0);
+    for (var i = 0u; i < LEG_COUNT; i++) {
+        var leg = leg_of(ray, i);
+        if leg_is_empty(leg) {
+            continue;
+        }
+        for (var n = 0u; n < NODE_COUNT; n++) {
+            let node = leg_advance(&leg, ray, n, &tau);
+            let local = local_directions(ray, node);
+            var density = densities(node.altitude_m);
+#ifdef MULTIPLE_SCATTERING
+            let source = multiply_scattered_source(table, node.altitude_m, local, density);
+            sum.multiple += node.weight_m * exp(-tau) * source;
+#endif
+            if leg.dark {
+                continue;
+            }
+            let lit = node.weight_m * exp(-tau - optical_depth_to_top(node.altitude_m, local.mu_s));
+            for (var c = 0u; c < SCATTERER_COUNT; c++) {
+                sum.single[c] += density[c] * lit;
+            }
+        }
+        leg_finish(&leg, ray, &tau);
+    }
+    for (var c = 0u; c < SCATTERER_COUNT; c++) {
+        sum.single[c] *= atmosphere.constituents[c].scattering_per_m;
+    }
+    return sum;
+}
+
+// Light falls exponentially into the planet's shadow and towards space; its logarithm is what interpolates well.
+fn logarithm(light: vec3<f32>) -> vec3<f32> {
+    return log(max(light, vec3<f32>(DARK)));
+}
