@@ -1,5 +1,6 @@
 //! Runs a plan on a device: no physics, no Vulkan.
 
+mod prices;
 mod spectral;
 mod targets;
 
@@ -13,6 +14,7 @@ use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Settings, 
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Camera, Light, Scene};
 
+pub use prices::{Price, prices};
 pub use targets::Targets;
 
 /// Renders scenes on one device; what one frame has computed, the next reuses.

@@ -238,6 +238,32 @@ fn explain_says_what_becomes_of_every_pass_without_a_device() {
 }
 
 #[test]
+fn explain_says_what_skipped_passes_would_cost() {
+    let cloudy = format!("{SCENE}[[clouds]]\nkind = \"cumulus\"\n");
+    let folder = folder_with(&[("clear.toml", SCENE), ("cloudy.toml", &cloudy)]);
+    let explain = |arguments: &str| -> serde_json::Value {
+        let output = welkin(folder.path(), arguments);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let pass = |plan: &serde_json::Value, name: &str| -> serde_json::Value {
+        plan["passes"].as_array().unwrap().iter().find(|pass| pass["name"] == name).unwrap().clone()
+    };
+    let clear = explain("explain clear.toml --quality low --json");
+    let cloudy = explain("explain cloudy.toml --quality low --no-prices --json");
+    let price = pass(&clear, "clouds")["would_cost"].clone();
+    assert_eq!(price["with"], "fair-weather cumulus");
+    assert!(price["milliseconds"].as_f64().unwrap() > 0.0);
+    // The price is what the pass takes where it runs, which has no price itself.
+    assert_eq!(price["bytes"], pass(&cloudy, "clouds")["bytes"]);
+    assert!(pass(&cloudy, "clouds")["would_cost"].is_null() && pass(&clear, "compose")["would_cost"].is_null());
+    let harmonics = pass(&clear, "first_order")["would_cost"]["with"].as_str().unwrap_or_default().to_owned();
+    let ran = pass(&clear, "first_order")["decision"] == "run";
+    assert!(ran || harmonics.contains("--multiple-scattering"), "{clear}");
+    assert!(cloudy["passes"].as_array().unwrap().iter().all(|pass| pass["would_cost"].is_null()));
+}
+
+#[test]
 fn a_place_that_cannot_be_written_costs_no_rendering() {
     for (out, said) in
         [("out.jpg", ".exr or .png"), ("no/out.png", "no folder 'no'"), ("ok.png -o no/a.exr", "no folder")]

@@ -1,11 +1,12 @@
 //! What became of each pass, as a table for people and as JSON for programs.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use serde::Serialize;
 use welkin::gpu::{Clock, DeviceInfo};
 use welkin::plan::{Decision, Quality};
-use welkin::renderer::Timings;
+use welkin::renderer::{Price, Timings};
 
 /// One run of a plan.
 #[derive(Debug, Serialize)]
@@ -29,6 +30,18 @@ struct PassStatistics {
     /// Time on the device; null when nothing was measured, 0 when nothing ran.
     milliseconds: Option<f64>,
     bytes: u64,
+    /// Of a skipped pass, where somebody has asked: what it would cost if it ran.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    would_cost: Option<WouldCost>,
+}
+
+#[derive(Debug, Serialize)]
+struct WouldCost {
+    /// What calls for the pass.
+    with: String,
+    /// Time on the device; null when nothing was measured.
+    milliseconds: Option<f64>,
+    bytes: u64,
 }
 
 impl Statistics {
@@ -40,6 +53,7 @@ impl Statistics {
             reason: pass.reason.clone(),
             milliseconds: device.map(|_| timings.milliseconds.get(pass.name).copied().unwrap_or(0.0)),
             bytes: pass.bytes,
+            would_cost: None,
         });
         Self {
             scene: scene.to_owned(),
@@ -52,6 +66,18 @@ impl Statistics {
             }),
             passes: passes.collect(),
         }
+    }
+
+    /// With what skipped passes would cost.
+    pub fn with_prices(mut self, prices: &BTreeMap<&'static str, Price>) -> Self {
+        for pass in &mut self.passes {
+            pass.would_cost = prices.get(pass.name).map(|price| WouldCost {
+                with: price.with.clone(),
+                milliseconds: price.milliseconds,
+                bytes: price.bytes,
+            });
+        }
+        self
     }
 
     /// JSON over several lines.
@@ -75,9 +101,10 @@ impl Statistics {
                 Some(time) if pass.decision == Decision::Run => format!("{time:.2}"),
                 _ => "-".to_owned(),
             };
+            let would_cost = pass.would_cost.as_ref().map(WouldCost::to_text).unwrap_or_default();
             let _ = writeln!(
                 text,
-                "{:<20} {decision:<6} {milliseconds:>10} {:>12}  {}",
+                "{:<20} {decision:<6} {milliseconds:>10} {:>12}  {}{would_cost}",
                 pass.name, pass.bytes, pass.reason
             );
         }
@@ -85,5 +112,12 @@ impl Statistics {
         let bytes: u64 = self.passes.iter().map(|pass| pass.bytes).sum();
         let _ = write!(text, "{:<20} {:<6} {total:>10.2} {bytes:>12}", "all", "");
         text
+    }
+}
+
+impl WouldCost {
+    fn to_text(&self) -> String {
+        let milliseconds = self.milliseconds.map(|time| format!("{time:.2} ms, ")).unwrap_or_default();
+        format!("; with {}: {milliseconds}{} bytes", self.with, self.bytes)
     }
 }

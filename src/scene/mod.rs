@@ -4,6 +4,7 @@ mod assemble;
 mod camera;
 mod clouds;
 mod direction;
+mod effect;
 mod error;
 mod file;
 mod light;
@@ -21,6 +22,7 @@ mod terrain;
 
 pub use camera::{Camera, Display, ToneMap};
 pub use direction::Direction;
+pub use effect::Effect;
 pub use error::{InvalidField, SceneError};
 pub use file::schema;
 pub use light::{DirectionalLight, EnvironmentLight, Light, PointLight};
