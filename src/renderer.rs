@@ -9,7 +9,9 @@ use std::collections::BTreeMap;
 use crate::foreground::Foreground;
 use crate::frame::Frame;
 use crate::gpu::{Clock, DeviceRequest, Gpu, Pace};
-use crate::passes::{self, CLOUDS, FRAME, Pass, Recording, RenderError, Resources, TABLES, record_probe};
+use crate::passes::{
+    self, CLOUDS, FRAME, Pass, Recording, RenderError, Resources, ShaderSources, TABLES, record_probe,
+};
 use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Settings, Surface};
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Camera, Light, Scene};
@@ -82,8 +84,17 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::NoLinearFilter`].
     pub fn on(gpu: Gpu) -> Result<Self, RenderError> {
+        Self::with_shaders(gpu, ShaderSources::embedded())
+    }
+
+    /// Renders with other shaders than the built-in ones: those that somebody edits, or those in which a test has planted
+    /// a fault.
+    ///
+    /// # Errors
+    /// [`RenderError::NoLinearFilter`]; what is wrong with a shader is said when it is first needed.
+    pub fn with_shaders(gpu: Gpu, shaders: ShaderSources) -> Result<Self, RenderError> {
         Ok(Self {
-            resources: Resources::new(gpu)?,
+            resources: Resources::with_shaders(gpu, shaders)?,
             history: History::default(),
             histories: Vec::new(),
             group: 0,

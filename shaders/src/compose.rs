@@ -1,6 +1,6 @@
 //! Joins a pass with the modules it imports into one naga module.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use naga_oil::compose::{
     ComposableModuleDescriptor, Composer, ComposerError, NagaModuleDescriptor, ShaderDefValue, get_preprocessor_data,
@@ -36,6 +36,17 @@ pub(crate) fn compose(
         Ok(module) => Ok((file, module)),
         Err(error) => Err(located(&composer, error)),
     }
+}
+
+/// Those definitions whose names occur in a pass or in what it imports: no other can change what it compiles to.
+pub(crate) fn relevant(sources: &Sources, pass: &str, definitions: &Definitions) -> Result<Definitions, ShaderError> {
+    let (_, text) = sources.pass(pass)?;
+    let modules = sources.modules();
+    let mut texts: Vec<&str> = needed_modules(text, &modules)?.into_iter().map(|path| modules[path].1).collect();
+    texts.push(text);
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    let words: BTreeSet<&str> = texts.iter().flat_map(|text| text.split(|c| !is_part(c))).collect();
+    Ok(definitions.iter().filter(|(name, _)| words.contains(name.as_str())).map(|(n, d)| (n.clone(), *d)).collect())
 }
 
 /// Definitions in naga_oil's terms. What is `false` stays undefined, as `#ifdef` asks for existence only.

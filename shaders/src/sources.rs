@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use crate::ShaderError;
+use crate::{Definitions, ShaderError, compose};
 
 include!(concat!(env!("OUT_DIR"), "/embedded.rs"));
 
@@ -54,6 +54,14 @@ impl Sources {
         self.files.iter().filter(|(_, text)| import_path(text).is_none()).map(|(file, _)| stem(file))
     }
 
+    /// Those definitions that can make a difference to a pass: what is compiled with others would be the same again.
+    ///
+    /// # Errors
+    /// [`ShaderError::UnknownPass`]; [`ShaderError::ImportCycle`].
+    pub fn relevant(&self, pass: &str, definitions: &Definitions) -> Result<Definitions, ShaderError> {
+        compose::relevant(self, pass, definitions)
+    }
+
     /// A pass's path for messages, and its text.
     pub(crate) fn pass(&self, name: &str) -> Result<(String, &str), ShaderError> {
         match self.files.get(&format!("{name}.wgsl")) {
@@ -86,6 +94,7 @@ fn import_path(text: &str) -> Option<&str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Definition;
 
     #[test]
     fn files_with_an_import_path_are_modules_and_all_others_are_passes() {
@@ -101,6 +110,18 @@ mod tests {
         let sources = Sources::default().with("clouds.wgsl", "").with("sky.wgsl", "");
         let error = sources.pass("cloud").unwrap_err().to_string();
         assert!(error.contains("`cloud`") && error.contains("clouds, sky"), "{error}");
+    }
+
+    #[test]
+    fn only_definitions_that_a_pass_or_its_imports_name_are_relevant() {
+        let sources = Sources::default()
+            .with("sky.wgsl", "#import welkin::optics\n#ifdef GROUND\n#endif\nconst M: u32 = optics::N;\n")
+            .with("optics.wgsl", "#define_import_path welkin::optics\nconst N: u32 = #{NODE_COUNT}u;\n")
+            .with("other.wgsl", "#define_import_path welkin::other\n#ifdef CLOUDS\n#endif\n");
+        let names = ["GROUND", "NODE_COUNT", "CLOUDS", "NODE"];
+        let all = names.map(|name| (name.to_owned(), Definition::U32(1))).into();
+        let relevant = sources.relevant("sky", &all).unwrap();
+        assert_eq!(relevant.into_keys().collect::<Vec<_>>(), ["GROUND", "NODE_COUNT"]);
     }
 
     #[test]

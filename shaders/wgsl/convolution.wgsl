@@ -3,6 +3,9 @@
 //
 // The sum over directions cannot resolve a peak narrower than their spacing, so the peak is subtracted: with p of
 // integral 1, int p I dw' = I + int p (I(w') - I) dw', whose integrand vanishes where p is largest.
+//
+// A peak elsewhere, as of light that is thrown back, is not subtracted, and a direction in it may count for more than
+// the whole of p. The sum is then divided by what it counts: a mean over directions is never larger than all of them.
 
 #import welkin::atmosphere::{atmosphere, phase_per_sr, PI, PROFILE_GROUP_COUNT, SCATTERER_COUNT, SCATTERER_SLOTS}
 #import welkin::source_grid::{direction_of, DIRECTION_COUNT}
@@ -25,22 +28,27 @@ fn source_function(index: u32) -> array<vec3<f32>, PROFILE_GROUP_COUNT> {
     let here = directions[index].xyz;
     let radiance = field[index];
     var sums: array<vec3<f32>, SCATTERER_SLOTS>;
+    // How much of each p, of 1, the sums count.
+    var counted: array<f32, SCATTERER_SLOTS>;
     for (var j = 0u; j < DIRECTION_COUNT; j++) {
         let there = directions[j];
-        let difference = 0.5 * there.w * (field[j] - radiance);
+        let half_sr = select(0.5 * there.w, 0.0, j == index);
+        let difference = half_sr * (field[j] - radiance);
         // Both mirror images of the other direction.
         let level = here.x * there.x + here.z * there.z;
         let across = here.y * there.y;
         let nu = min(vec2<f32>(level + across, level - across), vec2<f32>(1.0));
         for (var c = 0u; c < SCATTERER_COUNT; c++) {
-            sums[c] += (phase_per_sr(c, nu.x) + phase_per_sr(c, nu.y)) * difference;
+            let phase = phase_per_sr(c, nu.x) + phase_per_sr(c, nu.y);
+            sums[c] += phase * difference;
+            counted[c] += phase * half_sr;
         }
     }
     var convolved: array<vec3<f32>, PROFILE_GROUP_COUNT>;
     var scattering: array<vec3<f32>, PROFILE_GROUP_COUNT>;
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
         let group = atmosphere.constituents[c].profile_group;
-        convolved[group] += sums[c] * atmosphere.constituents[c].scattering_per_m;
+        convolved[group] += sums[c] / max(counted[c], 1.0) * atmosphere.constituents[c].scattering_per_m;
         scattering[group] += atmosphere.constituents[c].scattering_per_m;
     }
     for (var g = 0u; g < PROFILE_GROUP_COUNT; g++) {

@@ -45,6 +45,7 @@ use crate::foreground::ForegroundError;
 use crate::gpu::GpuError;
 use crate::plan::{Declaration, PlanError};
 use welkin_shaders::ShaderError;
+pub use welkin_shaders::Sources as ShaderSources;
 
 /// A pass: what the plan asks it, and how it is recorded.
 pub struct Pass {

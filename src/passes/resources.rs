@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use welkin_shaders::{Definitions, compile};
+use welkin_shaders::{Definitions, Shader};
 
-use super::RenderError;
+use super::{RenderError, ShaderSources};
 use crate::gpu::{
     AddressMode, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, NextUse, Pace,
     Pipeline, Sampler,
@@ -14,6 +14,7 @@ use crate::gpu::{
 pub struct Resources {
     /// The device.
     pub gpu: Gpu,
+    shaders: ShaderSources,
     sampler: Sampler,
     images: BTreeMap<&'static str, GpuImage>,
     buffers: BTreeMap<&'static str, GpuBuffer>,
@@ -38,14 +39,23 @@ impl Resources {
     /// Nothing yet, but a device that can hold the tables.
     ///
     /// # Errors
-    /// [`RenderError::NoLinearFilter`] when the device cannot interpolate tables of 32-bit floats.
+    /// As [`Resources::with_shaders`].
     pub fn new(gpu: Gpu) -> Result<Self, RenderError> {
+        Self::with_shaders(gpu, ShaderSources::embedded())
+    }
+
+    /// The same with other shaders than the built-in ones.
+    ///
+    /// # Errors
+    /// [`RenderError::NoLinearFilter`] when the device cannot interpolate tables of 32-bit floats.
+    pub fn with_shaders(gpu: Gpu, shaders: ShaderSources) -> Result<Self, RenderError> {
         if gpu.filtering(ImageFormat::Rgba32Float) != Filtering::Linear {
             return Err(RenderError::NoLinearFilter { device: gpu.info().name.clone() });
         }
         let sampler = gpu.sampler(Filter::Linear, [AddressMode::Clamp; 3])?;
         Ok(Self {
             gpu,
+            shaders,
             sampler,
             images: BTreeMap::new(),
             buffers: BTreeMap::new(),
@@ -141,7 +151,13 @@ impl Resources {
         if let Some(pipeline) = self.pipelines.get(&key) {
             return Ok(pipeline.clone());
         }
-        let pipeline = self.gpu.pipeline(&compile(pass, &key.1)?)?;
+        // Most definitions are nothing to most passes: what differs in those alone is the same pipeline.
+        let relevant = (pass, self.shaders.relevant(pass, &key.1)?);
+        let pipeline = match self.pipelines.get(&relevant) {
+            Some(pipeline) => pipeline.clone(),
+            None => self.gpu.pipeline(&Shader::from_sources(&self.shaders, pass, &relevant.1)?)?,
+        };
+        self.pipelines.insert(relevant, pipeline.clone());
         self.pipelines.insert(key, pipeline.clone());
         Ok(pipeline)
     }

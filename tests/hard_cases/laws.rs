@@ -1,0 +1,81 @@
+//! What holds in every picture, whatever the scene: finite, not negative, transmittance in [0, 1], falling with distance.
+
+use std::fmt;
+
+use welkin::frame::Frame;
+use welkin::scene::Scene;
+
+/// A value that breaks a law, with what it was made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Broken {
+    /// What does not hold.
+    pub law: &'static str,
+    /// Where, from the top left.
+    pub pixel: [u32; 2],
+    /// The value in the three bands.
+    pub value: [f64; 3],
+    /// Where the pixel looks, degrees above the horizontal and clockwise from north.
+    pub view_deg: [f64; 2],
+    /// What the scene is, in short.
+    pub inputs: String,
+}
+
+impl fmt::Display for Broken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([x, y], [elevation, azimuth]) = (self.pixel, self.view_deg);
+        write!(f, "{}: {:?} at column {x}, row {y}, ", self.law, self.value)?;
+        write!(f, "looking {elevation:.6}° up towards {azimuth:.4}°; {}", self.inputs)
+    }
+}
+
+/// Where a pixel's centre looks: elevation and azimuth, degrees.
+pub fn view_deg(scene: &Scene, [x, y]: [u32; 2]) -> [f64; 2] {
+    let view = scene.camera.direction_through(f64::from(x) + 0.5, f64::from(y) + 0.5);
+    [view.z.clamp(-1.0, 1.0).asin().to_degrees(), view.x.atan2(view.y).to_degrees()]
+}
+
+/// What a value was made from, for messages.
+pub fn inputs(scene: &Scene) -> String {
+    let (planet, camera) = (&scene.planet, &scene.camera);
+    let constituents: Vec<_> = scene.medium.constituents.iter().map(|c| format!("{c:?}")).collect();
+    format!(
+        "camera at {} m, planet {} m, air {} m; lights {:?}; medium {}",
+        camera.altitude_m,
+        planet.radius_m,
+        planet.atmosphere_height_m,
+        scene.lights,
+        constituents.join(", ")
+    )
+}
+
+/// What must hold for every number of a texel.
+type Law = (&'static str, fn(f32) -> bool);
+
+/// What a picture breaks, the first pixel of each law.
+pub fn broken(scene: &Scene, frame: &Frame) -> Vec<Broken> {
+    let radiance: [Law; 2] =
+        [("radiance must be finite", |v| v.is_finite()), ("radiance must not be negative", |v| v.is_nan() || v >= 0.0)];
+    let transmittance: [Law; 1] = [("transmittance must lie in [0, 1]", |v| (0.0..=1.0).contains(&v))];
+    let mut broken = first_broken(scene, &frame.radiance, &radiance);
+    broken.extend(first_broken(scene, &frame.transmittance, &transmittance));
+    let distances: Vec<_> = frame.distance_m.iter().map(|&distance_m| [distance_m; 3]).collect();
+    broken.extend(first_broken(scene, &distances, &[("distance must not be negative", |v| v >= 0.0)]));
+    broken
+}
+
+fn first_broken(scene: &Scene, texels: &[[f32; 3]], laws: &[Law]) -> Vec<Broken> {
+    let width = scene.camera.width;
+    let breaks = |&(law, holds): &Law| {
+        let at = texels.iter().position(|texel| !texel.iter().all(|&value| holds(value)))?;
+        let pixel = [at as u32 % width, at as u32 / width];
+        let (value, view_deg) = (texels[at].map(f64::from), view_deg(scene, pixel));
+        Some(Broken { law, pixel, value, view_deg, inputs: inputs(scene) })
+    };
+    laws.iter().filter_map(breaks).collect()
+}
+
+/// How much transmittance rises, at most, from one distance to the next longer one.
+pub fn rise(transmittances: &[[f64; 3]]) -> f64 {
+    let pairs = transmittances.windows(2).flat_map(|pair| (0..3).map(|band| pair[1][band] - pair[0][band]));
+    pairs.fold(0.0, f64::max)
+}
