@@ -2,24 +2,44 @@
 //!
 //! For each `scenes/clouds/NAME.toml` of which there is a `DIR/NAME.exr`, made by
 //! `welkin reference` from that scene at any size:
-//! `cargo run --release --example compare_clouds -- DIR [QUALITY...]`
+//! `cargo run --release --example compare_clouds -- DIR [--quality NAME]... [--form NAME]... [--scene NAME]...`
 //!
-//! Pixels count as cloudy where clouds hide more than half of what is behind them, and as thin from 0.03 to 0.3.
+//! Pixels count as cloudy where clouds hide more than half of what is behind them, and as thin from 0.03 to 0.3. With
+//! `--pictures FOLDER` what was rendered is written there.
 
 use std::path::{Path, PathBuf};
 
+use clap::Parser;
 use glam::DVec3;
 use welkin::frame::Frame;
 use welkin::gpu::DeviceRequest;
-use welkin::output::read_exr;
+use welkin::output::{AtomicFile, read_exr, write_exr};
 use welkin::plan::{CloudScattering, CloudSettings, Outputs, Quality, Settings};
 use welkin::reference::World;
-use welkin::renderer::Renderer;
+use welkin::renderer::{Rendered, Renderer};
 use welkin::report::compare;
 use welkin::scene::Scene;
 
 /// The band that is compared.
 const GREEN: usize = 1;
+
+#[derive(Parser)]
+struct Arguments {
+    /// Folder of the path tracer's pictures.
+    directory: PathBuf,
+    /// Qualities to compare.
+    #[arg(long = "quality", default_value = "medium")]
+    qualities: Vec<Quality>,
+    /// How light is scattered more than once, as in `CloudScattering`; all of them without.
+    #[arg(long = "form")]
+    forms: Vec<String>,
+    /// Scenes to compare; all of them without.
+    #[arg(long = "scene")]
+    scenes: Vec<String>,
+    /// Where to write what was rendered.
+    #[arg(long)]
+    pictures: Option<PathBuf>,
+}
 
 /// A scene with what the path tracer sees of it.
 struct Case {
@@ -66,56 +86,88 @@ fn opacity(scene: &Scene) -> Vec<f64> {
     (0..camera.width * camera.height).map(pixel).collect()
 }
 
-/// Over the pixels of an opacity: root mean square of ln(ratio) where noise is less than half of the light, the path
-/// tracer's own noise taken out; the ratio of the sums of all; how many pixels there are, and how many were too noisy.
-fn score(case: &Case, found: &Frame, opacities: std::ops::Range<f64>) -> (f64, f64, usize, usize) {
-    let (mut squares, mut noise, mut sums, mut count, mut noisy) = (0.0, 0.0, [0.0; 2], 0, 0);
-    for i in (0..found.radiance.len()).filter(|&i| opacities.contains(&case.opacity[i])) {
-        let (a, b) = (f64::from(found.radiance[i][GREEN]), f64::from(case.truth.radiance[i][GREEN]));
-        let error = case.truth.standard_error.as_ref().map_or(0.0, |errors| f64::from(errors[i][GREEN]) / b);
-        sums = [sums[0] + a, sums[1] + b];
-        if b <= 0.0 || error >= 0.5 {
-            noisy += 1;
-        } else {
-            squares += (a / b).ln().powi(2);
-            noise += error * error;
-            count += 1;
+/// How far a picture is from the truth over some of its pixels.
+struct Score {
+    /// Root mean square of ln(ratio), the truth's own noise taken out.
+    rms: f64,
+    /// That noise: root mean square of the relative standard error.
+    noise: f64,
+    /// Ratio of the sums of all light, and its standard error.
+    energy: [f64; 2],
+    pixels: usize,
+}
+
+impl Score {
+    fn new(case: &Case, found: &Frame, opacities: std::ops::Range<f64>) -> Self {
+        let (mut squares, mut noise, mut variance, mut sums, mut pixels) = (0.0, 0.0, 0.0, [0.0; 2], 0);
+        for i in (0..found.radiance.len()).filter(|&i| opacities.contains(&case.opacity[i])) {
+            let (a, b) = (f64::from(found.radiance[i][GREEN]), f64::from(case.truth.radiance[i][GREEN]));
+            let error = case.truth.standard_error.as_ref().map_or(0.0, |errors| f64::from(errors[i][GREEN]));
+            sums = [sums[0] + a, sums[1] + b];
+            squares += (a.max(1e-9) / b.max(1e-9)).ln().powi(2);
+            noise += (error / b.max(1e-9)).powi(2);
+            variance += error * error;
+            pixels += 1;
+        }
+        let ratio = sums[0] / sums[1];
+        Self {
+            rms: ((squares - noise) / pixels as f64).max(0.0).sqrt(),
+            noise: (noise / pixels as f64).sqrt(),
+            energy: [ratio, ratio * variance.sqrt() / sums[1]],
+            pixels,
         }
     }
-    (((squares - noise) / count as f64).max(0.0).sqrt(), sums[0] / sums[1], count, noisy)
+}
+
+/// Milliseconds of all passes of clouds.
+fn of_clouds(rendered: &Rendered) -> f64 {
+    let ours = |name: &str| name.starts_with("cloud") || name.starts_with("ordinates");
+    rendered.timings.milliseconds.iter().filter(|(name, _)| ours(name)).map(|(_, time)| time).sum()
+}
+
+fn print_row(case: &Case, quality: Quality, scattering: CloudScattering, rendered: &Rendered) {
+    let (cloudy, thin) = (Score::new(case, &rendered.frame, 0.5..1.1), Score::new(case, &rendered.frame, 0.03..0.3));
+    let flip = compare(&rendered.frame, &case.truth).map_or(f64::NAN, |comparison| comparison.mean_flip);
+    let [energy, error] = cloudy.energy;
+    println!(
+        "| {} | {quality} | {scattering:?} | {:.2} ({:.2}) | {energy:.2} ± {error:.2} | {} | {:.2} ({:.2}), {} | {flip:.3} | {:.0} |",
+        case.name,
+        cloudy.rms,
+        cloudy.noise,
+        cloudy.pixels,
+        thin.rms,
+        thin.noise,
+        thin.pixels,
+        of_clouds(rendered),
+    );
 }
 
 fn main() {
-    let mut arguments = std::env::args().skip(1);
-    let directory = arguments.next().expect("the folder of the path tracer's pictures");
-    let named: Vec<Quality> = arguments.map(|name| name.parse().unwrap_or_else(|e| panic!("{e}"))).collect();
-    let qualities = if named.is_empty() { vec![Quality::Medium] } else { named };
-    let cases = cases(Path::new(&directory));
+    let arguments = Arguments::parse();
+    let mut cases = cases(&arguments.directory);
+    cases.retain(|case| arguments.scenes.is_empty() || arguments.scenes.contains(&case.name));
+    let chosen = |form: &CloudScattering| arguments.forms.is_empty() || arguments.forms.contains(&format!("{form:?}"));
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
     let info = renderer.gpu().info();
     println!("Device: {} ({} {}).\n", info.name, info.driver, info.driver_version);
     println!(
-        "| scene | quality | scattering | RMS ln, cloudy | energy | pixels + too noisy | RMS ln, thin | FLIP | clouds ms |"
+        "| scene | quality | form | RMS of ln, cloudy (noise) | energy | pixels | thin (noise), pixels | FLIP | clouds, ms |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     for case in &cases {
-        for &quality in &qualities {
-            for scattering in CloudScattering::ALL {
+        for &quality in &arguments.qualities {
+            for scattering in CloudScattering::ALL.into_iter().filter(chosen) {
                 let clouds = CloudSettings { scattering, ..CloudSettings::of(quality) };
                 let settings = Settings { clouds, ..Settings::of(quality) };
                 let outputs = Outputs { capture: true, picture: false };
                 let rendered =
                     renderer.render(&case.scene, settings, outputs).unwrap_or_else(|error| panic!("{error}"));
-                let (rms, energy, pixels, noisy) = score(case, &rendered.frame, 0.5..1.1);
-                let (thin, ..) = score(case, &rendered.frame, 0.03..0.3);
-                let flip = compare(&rendered.frame, &case.truth).map_or(f64::NAN, |comparison| comparison.mean_flip);
-                let of_clouds = |name: &str| name.starts_with("cloud") || name.starts_with("ordinates");
-                let times = rendered.timings.milliseconds.iter().filter(|(name, _)| of_clouds(name));
-                let milliseconds: f64 = times.map(|(_, time)| time).sum();
-                println!(
-                    "| {} | {quality} | {scattering:?} | {rms:.2} | {energy:.2} | {pixels} + {noisy} | {thin:.2} | {flip:.3} | {milliseconds:.0} |",
-                    case.name
-                );
+                print_row(case, quality, scattering, &rendered);
+                if let Some(folder) = &arguments.pictures {
+                    let path = folder.join(format!("{}-{quality}-{scattering:?}.exr", case.name));
+                    let file = AtomicFile::create(&path).unwrap_or_else(|error| panic!("{error}"));
+                    write_exr(file, &rendered.frame, &case.scene).unwrap_or_else(|error| panic!("{error}"));
+                }
             }
         }
     }

@@ -105,6 +105,25 @@ fn a_white_furnace_shows_nothing_of_what_is_in_it() {
 }
 
 #[test]
+fn walks_that_look_for_the_sun_find_the_light_of_sharp_forward_scattering_with_less_noise() {
+    let phase = PhaseFunction::HenyeyGreenstein { g: 0.95 };
+    // Walks in stratified matter wait for chance to bring them near the sun.
+    let (mut blind, mut looking) =
+        (even_cube([4.0; 3], 1.0, phase.clone()), grid_cube(4.0, 1.0, phase.clone(), |_| 1.0));
+    let mut grey = grid_cube(4.0, 0.97, phase, |_| 1.0);
+    for world in [&mut blind, &mut looking, &mut grey] {
+        sun(world);
+    }
+    let [blind, looking, grey] = [&blind, &looking, &grey].map(|world| trace(world, FirstOrderBy::Walks, 1 << 16));
+    let error = blind.total_error[0].hypot(looking.total_error[0]);
+    assert_equal(looking.mean.total()[0], blind.mean.total()[0], error, "one light, two ways");
+    assert!(looking.total_error[0] < 0.5 * blind.total_error[0], "{looking:?} {blind:?}");
+    // Control: a little absorption is seen.
+    let error = grey.total_error[0].hypot(looking.total_error[0]);
+    assert!(looking.mean.total()[0] - grey.mean.total()[0] > 4.0 * error, "{grey:?}");
+}
+
+#[test]
 fn a_planet_that_absorbs_nothing_is_invisible_in_uniform_light() {
     let mut world = tables::earth("B", 1.0);
     let air = Constituent {

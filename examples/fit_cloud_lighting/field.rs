@@ -29,8 +29,10 @@ pub struct Method {
 pub struct LightField {
     size: UVec3,
     cell_m: DVec3,
-    /// [sun, sky] of each cell: (I1, I0).
+    /// [sun, sky] of each cell: (I1, I0) times its weight.
     moments: Vec<[[f64; 4]; 2]>,
+    /// `weight_of` of `ordinates_grid.wgsl`.
+    weights: Vec<f64>,
     /// f and g'.
     pub forward_share: f64,
     reduced_cosine: f64,
@@ -106,12 +108,14 @@ impl Solver {
         let image = |name| resources.existing_image(name).ok_or("solved");
         let read = |name| -> Result<Vec<[u16; 4]>, Box<dyn Error>> { Ok(resources.gpu.read_image(image(name)?)?) };
         let (sun, sky) = (read("ordinates_sunlight")?, read("ordinates_skylight")?);
+        let source: Vec<[f32; 4]> = resources.gpu.read_image(image("ordinates_source")?)?;
         let wide = |texel: &[u16; 4]| texel.map(|bits| f64::from(half::f16::from_bits(bits)));
         let level = problem.grid.levels[0];
         Ok(LightField {
             size: level.size,
             cell_m: level.cell_m,
             moments: sun.iter().zip(&sky).map(|(a, b)| [wide(a), wide(b)]).collect(),
+            weights: source.iter().map(|cell| 100.0 * f64::from(cell[0]) + 1e-3).collect(),
             forward_share: forward_share(phase),
             reduced_cosine: reduced_cosine(phase),
         })
@@ -141,17 +145,20 @@ impl LightField {
         let cells = (place_m / self.cell_m - 0.5).clamp(DVec3::ZERO, self.size.as_dvec3() - 1.0);
         let low = cells.as_uvec3();
         let share = cells - low.as_dvec3();
-        let mut sum = [[0.0; 4]; 2];
+        let (mut sum, mut weights) = ([[0.0; 4]; 2], 0.0);
         for i in 0..8_u32 {
             let corner = UVec3::new(i & 1, i >> 1 & 1, i >> 2);
             let cell = (low + corner).min(self.size - 1);
             let side = |c: u32, s: f64| if c == 1 { s } else { 1.0 - s };
             let weight = side(corner.x, share.x) * side(corner.y, share.y) * side(corner.z, share.z);
-            let texel = &self.moments[(cell.x + self.size.x * (cell.y + self.size.y * cell.z)) as usize];
+            let index = (cell.x + self.size.x * (cell.y + self.size.y * cell.z)) as usize;
+            let texel = &self.moments[index];
+            weights += weight * self.weights[index];
             for (s, t) in sum.iter_mut().flatten().zip(texel.iter().flatten()) {
                 *s += weight * t;
             }
         }
-        sum.map(|[x, y, z, mean]| (mean - self.reduced_cosine * direction.dot(DVec3::new(x, y, z))).max(0.0))
+        let light = |[x, y, z, mean]: [f64; 4]| mean - self.reduced_cosine * direction.dot(DVec3::new(x, y, z));
+        sum.map(|moments| (light(moments) / weights).max(0.0))
     }
 }

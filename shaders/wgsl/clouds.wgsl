@@ -5,7 +5,8 @@
 // energy. Steps start at a place of their own in each pixel, by a hash: the same picture every time.
 //
 // The air's light in front of a depth t is taken as A (1 - T(t)) / (1 - T(end)), A the whole ray's: exact where the
-// light scattered per optical depth does not change along the ray. Clouds shade it, and the ground, by the first light.
+// light scattered per optical depth does not change along the ray. Clouds take from it where they stand before the first
+// light; what they scatter down adds to the air's diffuse light.
 //
 // Definitions: CAPTURE (also write distances); CLOUD_MAX_STEPS; CLOUD_STEP_M, the shortest step; CLOUD_STEP_PERMILLE, a step's share of the distance.
 
@@ -14,15 +15,19 @@
 #import welkin::cloud_field::{cloud_layers, layer_density, to_map, CLOUD_LAYER_COUNT}
 #import welkin::cloud_noise::hash
 #import welkin::cloud_skip::empty_m
-#import welkin::cloud_source::{phases, shade, step_radiance, Sample, PHASE_COUNT}
+#import welkin::cloud_source::{
+    clear_fluxes, daylight, diffuse_share, phases, step_radiance, ClearFluxes, Sample, PHASE_COUNT,
+}
 #import welkin::geometry
 #import welkin::observer::{observer, LIGHT_COUNT}
 
 // Light of the clouds at the observer, and their transmittance.
 @group(1) @binding(10) var cloud_radiance_image: texture_storage_2d<rgba32float, write>;
-// int T dT_air to the last cloud and T T_air there, from which the air's light that is left follows; and what
-// clouds leave of the light on the ground there.
+// int T S dT_air to the end of the ray and T T_air there, from which what is left of the air's light follows: S is what
+// clouds leave of the light that the air scatters, of the sun's beam and, in the second image, of diffuse light. Then what
+// they leave on the ground there, of the beam and of the sky.
 @group(1) @binding(11) var cloud_air_image: texture_storage_2d<rgba32float, write>;
+@group(1) @binding(12) var cloud_diffuse_image: texture_storage_2d<rgba32float, write>;
 
 #ifdef CAPTURE
 // Mean distance of the clouds, weighted with what they hide.
@@ -36,12 +41,13 @@ const STEP_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
 const CROSSINGS: u32 = 4u * CLOUD_LAYER_COUNT;
 const CROSSING_SLOTS: u32 = max(CROSSINGS, 1u);
 const NEVER_M: f32 = 1e30;
-// Optical depth beyond which clouds are opaque, and that beyond which they hide a light's disc too, which is a
-// hundred thousand times as bright as the sky.
-const OPAQUE: f32 = 6.0;
-const DISC_OPAQUE: f32 = 18.0;
-// Cosine of the angle around a light within which its disc may be seen.
-const NEAR_LIGHT: f32 = 0.9998;
+// Optical depth beyond which nothing of a cloud is looked at. Light scattered many times comes from deep inside, dimmed
+// by only that share of the depth which turns it away, a quarter for droplets: e^-6 of it is left here. A light's disc, a
+// hundred thousand times as bright as the sky, is hidden as well.
+const OPAQUE: f32 = 24.0;
+// From this depth on steps grow in proportion to it, up to so many times: what is seen there is smooth.
+const SMOOTH_DEPTH: f32 = 4.0;
+const SMOOTH_GROWTH: f32 = 4.0;
 
 struct Ray {
     direction: vec3<f32>,
@@ -55,8 +61,9 @@ struct Sum {
     // Optical depth of clouds and of air so far.
     clouds: f32,
     air: vec3<f32>,
-    // int T dT_air.
-    left: vec3<f32>,
+    // int T S dT_air, of beam and diffuse light.
+    beam: vec3<f32>,
+    diffuse: vec3<f32>,
     // int t dT, m.
     weighted_m: f32,
 }
@@ -119,10 +126,16 @@ fn is_inside(layer: u32, altitude: f32) -> bool {
     return up_m >= 0.0 && up_m <= cloud_layers[layer].thickness_m;
 }
 
+// Steps through air, whose light changes where shadows of clouds lie, m; longer in the distance.
+const AIR_STEP_M: f32 = 400.0;
+const AIR_STEP_GROWTH: f32 = 0.05;
+const AIR_STEPS: f32 = 24.0;
+
 // Moves through air alone.
-fn pass_air(sum: ptr<function, Sum>, ray: Ray, from_m: f32, to_m: f32) {
+fn pass_air(sum: ptr<function, Sum>, ray: Ray, clear: ClearFluxes, from_m: f32, to_m: f32) {
 #ifdef AIR
-    let count = u32(clamp((to_m - from_m) / 2000.0, 1.0, 16.0));
+    let longest_m = max(AIR_STEP_M, AIR_STEP_GROWTH * from_m);
+    let count = u32(clamp(ceil((to_m - from_m) / longest_m), 1.0, AIR_STEPS));
     let step_m = (to_m - from_m) / f32(count);
     for (var i = 0u; i < count; i++) {
         let middle_m = from_m + (f32(i) + 0.5) * step_m;
@@ -130,7 +143,10 @@ fn pass_air(sum: ptr<function, Sum>, ray: Ray, from_m: f32, to_m: f32) {
         let before = exp(-(*sum).air);
         (*sum).air += step_m * extinction_at(altitude);
         let map = to_map(atmosphere.radius_m, observer_position() + ray.direction * middle_m);
-        (*sum).left += exp(-(*sum).clouds) * shade(map, altitude) * (before - exp(-(*sum).air));
+        let day = daylight(map, altitude);
+        let share = exp(-(*sum).clouds) * (before - exp(-(*sum).air));
+        (*sum).beam += day.straight * share;
+        (*sum).diffuse += diffuse_share(day, clear) * share;
     }
 #endif
 }
@@ -205,18 +221,13 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
     var ray = ray_of(view_direction(pixel.xy));
     var phase = phases(ray.direction);
     let offset = random(pixel.xy);
-    var opaque = OPAQUE;
-    for (var light = 0u; light < LIGHT_COUNT; light++) {
-        if dot(ray.direction, observer.lights[light].direction) > NEAR_LIGHT {
-            opaque = DISC_OPAQUE;
-        }
-    }
+    let clear = clear_fluxes(cloud_layers[0].base_m, observer.lights[0].direction.z);
     var sum: Sum;
     var t_m = 0.0;
     var boundary_m = next_crossing_m(&ray, t_m);
     var entered_m = 0.0;
     var was_empty = true;
-    for (var i = 0u; i < MAX_STEPS && t_m < ray.end_m && sum.clouds < opaque; i++) {
+    for (var i = 0u; i < MAX_STEPS && t_m < ray.end_m && sum.clouds < OPAQUE; i++) {
         if t_m >= boundary_m {
             boundary_m = next_crossing_m(&ray, t_m);
             entered_m = t_m;
@@ -231,34 +242,36 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
             inside = inside || is_inside(layer, middle);
         }
         if !inside {
-            pass_air(&sum, ray, t_m, boundary_m);
+            pass_air(&sum, ray, clear, t_m, boundary_m);
             t_m = boundary_m;
             was_empty = true;
             continue;
         }
         // Seen from far above, a layer still takes a few steps.
         let longest_m = max(0.125 * (boundary_m - entered_m), STEP_M);
-        let step_m = min(min(max(STEP_M, STEP_GROWTH * t_m), longest_m), boundary_m - t_m);
+        let growth = clamp(sum.clouds / SMOOTH_DEPTH, 1.0, SMOOTH_GROWTH);
+        let step_m = min(min(growth * max(STEP_M, STEP_GROWTH * t_m), longest_m), boundary_m - t_m);
         if was_empty {
             let here = observer_position() + ray.direction * t_m;
             let skipped = min(skip_m(to_map(atmosphere.radius_m, here), altitude_m(ray, t_m), middle), boundary_m - t_m);
             if skipped > step_m {
-                pass_air(&sum, ray, t_m, t_m + skipped);
+                pass_air(&sum, ray, clear, t_m, t_m + skipped);
                 t_m += skipped;
                 continue;
             }
         }
         let at_m = t_m + offset * step_m;
         was_empty = !take_step(&sum, ray, &phase, vec2<f32>(at_m, altitude_m(ray, at_m)), step_m);
-        pass_air(&sum, ray, t_m, t_m + step_m);
+        pass_air(&sum, ray, clear, t_m, t_m + step_m);
         t_m += step_m;
     }
-    var ground_share = 1.0;
+    var ground = vec2<f32>(1.0);
     if ray.end_m < NEVER_M {
-        pass_air(&sum, ray, t_m, ray.end_m);
-        ground_share = shade(to_map(atmosphere.radius_m, observer_position() + ray.direction * ray.end_m), 0.0);
+        pass_air(&sum, ray, clear, t_m, ray.end_m);
+        let day = daylight(to_map(atmosphere.radius_m, observer_position() + ray.direction * ray.end_m), 0.0);
+        ground = vec2<f32>(day.through, day.diffuse);
     }
-    let transmittance = select(exp(-sum.clouds), 0.0, sum.clouds >= opaque);
+    let transmittance = select(exp(-sum.clouds), 0.0, sum.clouds >= OPAQUE);
 #ifdef CAPTURE
     // Where nothing is hidden there is no such distance.
     let hidden = 1.0 - transmittance;
@@ -266,5 +279,7 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
     textureStore(cloud_distance_image, pixel.xy, vec4<f32>(mean_m, 0.0, 0.0, 0.0));
 #endif
     textureStore(cloud_radiance_image, pixel.xy, vec4<f32>(sum.radiance, transmittance));
-    textureStore(cloud_air_image, pixel.xy, vec4<f32>(sum.left + transmittance * exp(-sum.air), ground_share));
+    let behind = transmittance * exp(-sum.air);
+    textureStore(cloud_air_image, pixel.xy, vec4<f32>(sum.beam + behind, ground.x));
+    textureStore(cloud_diffuse_image, pixel.xy, vec4<f32>(sum.diffuse + behind, ground.y));
 }

@@ -11,7 +11,9 @@
 #import welkin::lit_sphere::{is_sphere, sphere_radiance}
 #endif
 #import welkin::observer::{observer, DISC_COUNT, LIGHT_COUNT}
-#import welkin::sky::{air_radiance, emission_radiance, ground_radiance, view_transmittance, SkyDirection}
+#import welkin::sky::{
+    air_radiance_of, emission_radiance, ground_radiance_of, view_transmittance, Shares, SkyDirection,
+}
 
 @group(0) @binding(8) var radiance_image: texture_storage_2d<rgba32float, write>;
 #ifdef CAPTURE
@@ -31,26 +33,32 @@ const NO_SURFACE_M: f32 = 1e30;
 #ifdef CLOUDS
 @group(1) @binding(10) var cloud_radiance_image: texture_2d<f32>;
 @group(1) @binding(11) var cloud_air_image: texture_2d<f32>;
+@group(1) @binding(12) var cloud_diffuse_image: texture_2d<f32>;
 #endif
 
-// What clouds do to a pixel: their own light, what they let through, and what they leave of the air's light.
+// What clouds do to a pixel: their own light, what they let through, and what they leave of the light of air and ground,
+// of what comes straight from the lights and of the rest.
 struct Overlay {
     radiance: vec3<f32>,
     transmittance: f32,
-    air: vec3<f32>,
-    // Of the light on the ground.
-    ground: f32,
+    air: Shares,
+    ground: Shares,
 }
 
 // `behind` is the transmittance of all of the air.
 fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
 #ifdef CLOUDS
     let clouds = textureLoad(cloud_radiance_image, pixel, 0);
-    let air = textureLoad(cloud_air_image, pixel, 0);
-    let left = (air.rgb - clouds.a * behind) / max(1.0 - behind, vec3<f32>(1e-6));
-    return Overlay(clouds.rgb, clouds.a, clamp(left, vec3<f32>(0.0), vec3<f32>(1.0)), air.a);
+    let beam = textureLoad(cloud_air_image, pixel, 0);
+    let diffuse = textureLoad(cloud_diffuse_image, pixel, 0);
+    let whole = max(1.0 - behind, vec3<f32>(1e-6));
+    let air = Shares(
+        max((beam.rgb - clouds.a * behind) / whole, vec3<f32>(0.0)), max((diffuse.rgb - clouds.a * behind) / whole, vec3<f32>(0.0))
+    );
+    return Overlay(clouds.rgb, clouds.a, air, Shares(vec3<f32>(beam.a), vec3<f32>(diffuse.a)));
 #else
-    return Overlay(vec3<f32>(0.0), 1.0, vec3<f32>(1.0), 1.0);
+    let whole = Shares(vec3<f32>(1.0), vec3<f32>(1.0));
+    return Overlay(vec3<f32>(0.0), 1.0, whole, whole);
 #endif
 }
 
@@ -138,11 +146,11 @@ fn seen(pixel: vec2<u32>, view: vec3<f32>, half: HalfPixel) -> Seen {
         let direction = relative_to_light(view, half, light);
         var behind = vec3<f32>(0.0);
         if half.below_horizon {
-            behind = clouds.ground * ground_radiance(light, direction);
+            behind = ground_radiance_of(light, direction, clouds.ground);
         } else {
             behind = disc_radiance(view, light);
         }
-        let radiance = clouds.air * air_radiance(light, direction) + seen.transmittance * behind;
+        let radiance = air_radiance_of(light, direction, clouds.air) + seen.transmittance * behind;
         seen.radiance += observer.lights[light].irradiance * radiance;
     }
     // Lights that are only seen, and light nothing.

@@ -12,10 +12,11 @@
 //
 // Legend and definitions: those of welkin::ordinates_grid.
 
-#import welkin::ordinates_grid::{coordinates, level_of, ordinates, LEVEL_COUNT}
+#import welkin::ordinates_grid::{coordinates, level_of, ordinates, weight_of, LEVEL_COUNT}
 
 @group(2) @binding(1) var ordinates_sunlight: texture_3d<f32>;
 @group(2) @binding(2) var ordinates_skylight: texture_3d<f32>;
+@group(2) @binding(3) var ordinates_source: texture_3d<f32>;
 
 // Share of a level's half width within which it counts alone; outside it gives way to the next.
 const INNER: f32 = 0.85;
@@ -23,8 +24,9 @@ const INNER: f32 = 0.85;
 // b' / c' (I0 - g' view . I1) of sun and sky, not negative. Light travels along the directions of I1, views against it.
 fn scattered_from(level: u32, place_m: vec3<f32>, view: vec3<f32>, linear: sampler) -> vec2<f32> {
     let at = coordinates(place_m, level, vec3<f32>(textureDimensions(ordinates_sunlight)), 1.0);
-    let sun = textureSampleLevel(ordinates_sunlight, linear, at, 0.0);
-    let sky = textureSampleLevel(ordinates_skylight, linear, at, 0.0);
+    let weight = weight_of(textureSampleLevel(ordinates_source, linear, at, 0.0).x);
+    let sun = textureSampleLevel(ordinates_sunlight, linear, at, 0.0) / weight;
+    let sky = textureSampleLevel(ordinates_skylight, linear, at, 0.0) / weight;
     let along = vec2<f32>(dot(view, sun.xyz), dot(view, sky.xyz));
     return max(vec2<f32>(sun.w, sky.w) - ordinates.reduced_cosine * along, vec2<f32>(0.0));
 }

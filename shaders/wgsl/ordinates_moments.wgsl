@@ -4,7 +4,7 @@
 //
 // Definitions: those of welkin::ordinates_grid and welkin::ordinates_directions.
 
-#import welkin::ordinates_grid::{ordinates, LEVEL_COUNT}
+#import welkin::ordinates_grid::{ordinates, weight_of, LEVEL_COUNT}
 #import welkin::ordinates_directions::{octant_signs, ring_components, ring_weight, DIRECTION_COUNT, RING_COUNT}
 
 struct Part {
@@ -13,7 +13,9 @@ struct Part {
 
 @group(0) @binding(0) var<uniform> part: Part;
 @group(0) @binding(1) var<storage, read> ordinates_radiance: array<vec2<f32>>;
-// xyz: I1 = 3 x mean of direction times radiance; w: I0, mean radiance. Light travels along directions.
+// Both times the cell's weight. xyz: I1 = 3 x mean of direction times radiance; w: I0, mean radiance. Light travels along
+// directions.
+@group(0) @binding(4) var ordinates_source: texture_3d<f32>;
 @group(0) @binding(2) var ordinates_sunlight_image: texture_storage_3d<rgba16float, write>;
 @group(0) @binding(3) var ordinates_skylight_image: texture_storage_3d<rgba16float, write>;
 
@@ -36,6 +38,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         }
     }
     let cell = vec3<u32>(id.xy, id.z + box.first_slice);
-    textureStore(ordinates_sunlight_image, cell, sun);
-    textureStore(ordinates_skylight_image, cell, sky);
+    let weight = weight_of(textureLoad(ordinates_source, cell, 0).x);
+    textureStore(ordinates_sunlight_image, cell, weight * sun);
+    textureStore(ordinates_skylight_image, cell, weight * sky);
 }

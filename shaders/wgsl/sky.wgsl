@@ -78,16 +78,30 @@ fn sky_view(light: u32, layer: u32, direction: SkyDirection) -> vec3<f32> {
     return exp(textureSampleLevel(sky_view_table, table_sampler, uv, first + layer, 0.0).rgb);
 }
 
+// What clouds leave of light that comes straight from a light, and of light that air or clouds have scattered before.
+struct Shares {
+    straight: vec3<f32>,
+    diffuse: vec3<f32>,
+}
+
+const ALL: Shares = Shares(vec3<f32>(1.0), vec3<f32>(1.0));
+
 // Radiance of the air along the ray, 1/sr: per unit irradiance of the light.
 fn air_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
+    return air_radiance_of(light, direction, ALL);
+}
+
+// The same of shares of its light.
+fn air_radiance_of(light: u32, direction: SkyDirection, shares: Shares) -> vec3<f32> {
     var radiance = vec3<f32>(0.0);
 #ifdef LIT
-#ifdef MULTIPLE_SCATTERING
-    radiance = sky_view(light, MULTIPLE_LAYER, direction);
-#endif
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
         radiance += phase_per_sr(c, direction.nu) * sky_view(light, SINGLE_LAYER + c, direction);
     }
+    radiance *= shares.straight;
+#ifdef MULTIPLE_SCATTERING
+    radiance += shares.diffuse * sky_view(light, MULTIPLE_LAYER, direction);
+#endif
     radiance *= length_m(direction);
 #endif
     return radiance;
@@ -95,15 +109,20 @@ fn air_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
 
 // Radiance that leaves the ground where a view ray meets it, 1/sr: per unit irradiance of the light.
 fn ground_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
+    return ground_radiance_of(light, direction, ALL);
+}
+
+// The same of shares of the light on the ground.
+fn ground_radiance_of(light: u32, direction: SkyDirection, shares: Shares) -> vec3<f32> {
     var radiance = vec3<f32>(0.0);
 #ifdef GROUND
     let mu = cos(direction.zenith_rad);
     let mu_s = ground_mu_s(view_ray(observer.altitude_m, mu, light_mu_s(light), direction.nu, true));
-    var irradiance = direct_irradiance_of_disc(light, mu_s);
+    var irradiance = shares.straight * direct_irradiance_of_disc(light, mu_s);
 #ifdef MULTIPLE_SCATTERING
     for (var beam = 0u; beam < beam_count(light); beam++) {
         let diffuse = diffuse_ground_irradiance(multiple_scattering_table, beam_mu_s(light, beam, mu_s));
-        irradiance += beam_weight(light, beam) * diffuse;
+        irradiance += shares.diffuse * beam_weight(light, beam) * diffuse;
     }
 #endif
     radiance = atmosphere.ground_albedo / PI * irradiance;

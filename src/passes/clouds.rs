@@ -23,7 +23,7 @@ pub const PASS: Pass = Pass {
             "optical_depth_table",
             "multiple_scattering_table",
         ],
-        writes: &["cloud_radiance_image", "cloud_air_image", "cloud_distance_image"],
+        writes: &["cloud_radiance_image", "cloud_air_image", "cloud_diffuse_image", "cloud_distance_image"],
         inputs: |facts| {
             let scene = facts.scene;
             let settings = (facts.settings.clouds, facts.settings.multiple_scattering_size);
@@ -39,7 +39,7 @@ pub const PASS: Pass = Pass {
         },
         bytes: |facts| {
             let capture = if facts.outputs.capture { ImageFormat::R32Float.texel_bytes() } else { 0 };
-            shape(facts).texels() * (2 * ImageFormat::Rgba32Float.texel_bytes() + capture)
+            shape(facts).texels() * (3 * ImageFormat::Rgba32Float.texel_bytes() + capture)
         },
     },
     record,
@@ -75,6 +75,7 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
     recording.resources.image("cloud_radiance_image", shape, ImageFormat::Rgba32Float)?;
     recording.resources.image("cloud_air_image", shape, ImageFormat::Rgba32Float)?;
+    recording.resources.image("cloud_diffuse_image", shape, ImageFormat::Rgba32Float)?;
     if recording.facts.outputs.capture {
         recording.resources.image("cloud_distance_image", shape, ImageFormat::R32Float)?;
     }

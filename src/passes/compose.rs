@@ -19,6 +19,7 @@ pub const PASS: Pass = Pass {
             "view_emission_table",
             "cloud_radiance_image",
             "cloud_air_image",
+            "cloud_diffuse_image",
             "froxel_optical_depth",
             "froxel_emission",
             "froxel_light",

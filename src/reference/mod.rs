@@ -35,6 +35,7 @@ pub mod slab;
 mod solver;
 mod spectrum;
 mod spread;
+mod sunward;
 mod tally;
 pub mod transport;
 mod walk;

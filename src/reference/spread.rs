@@ -56,13 +56,13 @@ impl Walker<'_> {
             Some(rate) => {
                 let mut density = std::mem::take(&mut self.density);
                 let local = self.local(event.at, Source::Air, &mut density);
-                self.turn(state, event.at, &Vertex::Medium(local, rate));
+                self.turn(state, event.at, &Vertex::Medium(local, rate), tally);
                 self.density = density;
             }
             None => {
                 let (normal, albedo) = self.world.ground_at(event.at);
                 let vertex = Vertex::Ground(albedo, normal);
-                self.turn(state, event.at, &vertex);
+                self.turn(state, event.at, &vertex, tally);
             }
         }
         self.survives(state)

@@ -17,6 +17,7 @@ use super::random::Draw;
 use super::segment::Segment;
 use super::shape::End;
 use super::spectrum::{self, sum};
+use super::sunward::{self, Sunward};
 use super::tally::Tally;
 use super::world::{Source, World};
 
@@ -49,6 +50,7 @@ pub struct State {
 pub struct Walker<'a> {
     pub(super) world: &'a World,
     guide: Option<Guide>,
+    sunward: Option<Sunward<'a>>,
     pub(super) density: Vec<f64>,
     pub(super) segment: Segment,
     /// The random numbers.
@@ -76,7 +78,14 @@ impl Vertex<'_> {
 impl<'a> Walker<'a> {
     /// A walker with its own random numbers.
     pub fn new(world: &'a World, draw: Draw) -> Self {
-        Self { world, guide: Guide::new(world), density: Vec::new(), segment: Segment::default(), draw }
+        Self {
+            world,
+            guide: Guide::new(world),
+            sunward: Sunward::new(world),
+            density: Vec::new(),
+            segment: Segment::default(),
+            draw,
+        }
     }
 
     /// Follows a walk to its end. Light that it finds is added to `tally`.
@@ -157,7 +166,7 @@ impl<'a> Walker<'a> {
         }
         if self.draw.uniform() < probability {
             state.weight = state.weight.map(|w| w / probability);
-            self.turn(state, at, &vertex);
+            self.turn(state, at, &vertex, tally);
             return self.survives(state).then_some(true);
         }
         state.weight = passed.map(|w| w / (1.0 - probability));
@@ -181,7 +190,7 @@ impl<'a> Walker<'a> {
         state.reference = sum(spectrum::product(state.weight, local.scattering())) / rate;
         if state.reference > 0.0 {
             self.next_event(&state, at, &vertex, lights, tally);
-            self.turn(&mut state, at, &vertex);
+            self.turn(&mut state, at, &vertex, tally);
             self.density = density;
             self.follow(state, tally);
         } else {
@@ -212,7 +221,7 @@ impl<'a> Walker<'a> {
         state.ground = true;
         let vertex = Vertex::Ground(albedo, normal);
         self.next_event(state, at, &vertex, lights, tally);
-        self.turn(state, at, &vertex);
+        self.turn(state, at, &vertex, tally);
         self.survives(state)
     }
 
@@ -263,17 +272,32 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// Chooses a new direction at a vertex and weighs it.
-    pub(super) fn turn(&mut self, state: &mut State, at: DVec3, vertex: &Vertex) {
+    /// Chooses a new direction at a vertex and weighs it. Extra walks towards the sun are followed to their ends.
+    pub(super) fn turn(&mut self, state: &mut State, at: DVec3, vertex: &Vertex, tally: &mut Tally) {
+        if let Some(sunward) = self.sunward.filter(|_| self.draw.uniform() < sunward::RATE) {
+            let direction = sunward.sample(&mut self.draw);
+            let mut extra = self.turned(state, at, vertex, direction);
+            if sum(extra.weight) > 0.0 && self.survives(&mut extra) {
+                self.follow(extra, tally);
+            }
+        }
         let direction = self.sample(state, at, vertex);
+        *state = self.turned(state, at, vertex, direction);
+    }
+
+    /// The walk after it has been turned into a direction.
+    fn turned(&self, state: &State, at: DVec3, vertex: &Vertex, direction: DVec3) -> State {
         let pdf = self.pdf(state, at, vertex, direction);
         let response = vertex.response(state.direction, direction);
-        state.weight = std::array::from_fn(|j| state.weight[j] * response[j] / pdf);
-        state.position = at;
-        state.direction = direction;
-        state.order += 1;
-        state.pdf_per_sr = Some(pdf);
-        state.reach_m = f64::INFINITY;
+        State {
+            position: at,
+            direction,
+            weight: std::array::from_fn(|j| state.weight[j] * response[j] / pdf),
+            order: state.order + 1,
+            pdf_per_sr: Some(pdf),
+            reach_m: f64::INFINITY,
+            ..*state
+        }
     }
 
     fn sample(&mut self, state: &State, at: DVec3, vertex: &Vertex) -> DVec3 {
@@ -306,7 +330,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// Density with which `sample` chooses a direction, 1/sr.
+    /// Density with which a walk and its extra walks choose a direction, 1/sr.
     fn pdf(&self, state: &State, at: DVec3, vertex: &Vertex, direction: DVec3) -> f64 {
         let own = match vertex {
             Vertex::Medium(local, _) => {
@@ -322,15 +346,17 @@ impl<'a> Walker<'a> {
             }
             Vertex::Ground(_, normal) => normal.dot(direction).max(0.0) / PI,
         };
-        match self.guide.as_ref().and_then(|guide| guide.lobe(self.world, at, state.order)) {
+        let chosen = match self.guide.as_ref().and_then(|guide| guide.lobe(self.world, at, state.order)) {
             Some(lobe) => (1.0 - lobe.share) * own + lobe.share * lobe.pdf(direction),
             None => own,
-        }
+        };
+        chosen + self.sunward.map_or(0.0, |sunward| sunward::RATE * sunward.pdf(direction))
     }
 
     /// Russian roulette.
     pub(super) fn survives(&mut self, state: &mut State) -> bool {
-        let share = sum(state.weight) / (ROULETTE_BELOW * state.reference);
+        let worth = self.sunward.map_or(1.0, |sunward| sunward.worth(state.direction));
+        let share = worth * sum(state.weight) / (ROULETTE_BELOW * state.reference);
         if share >= 1.0 {
             return true;
         }
