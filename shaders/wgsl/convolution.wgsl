@@ -2,12 +2,14 @@
 // The source function of a texel from the radiance field there: the field convolved with the phase functions.
 //
 // The sum over directions cannot resolve a peak narrower than their spacing, so the peak is subtracted: with p of
-// integral 1, int p I dw' = I + int p (I(w') - I) dw', whose integrand vanishes where p is largest.
+// integral 1, int p I dw' = I + int p (I(w') - I) dw', whose integrand vanishes where p is largest. Phase functions that
+// have no more than a square of nu, as that of molecules, need no such sum for each direction: five moments of the field
+// do for all.
 //
 // A peak elsewhere, as of light that is thrown back, is not subtracted, and a direction in it may count for more than
 // the whole of p. The sum is then divided by what it counts: a mean over directions is never larger than all of them.
 
-#import welkin::atmosphere::{atmosphere, phase_per_sr, PI, PROFILE_GROUP_COUNT, SCATTERER_COUNT, SCATTERER_SLOTS}
+#import welkin::atmosphere::{atmosphere, phase_per_sr, LOBE_COUNT, PI, PROFILE_GROUP_COUNT, SCATTERER_COUNT}
 #import welkin::source_grid::{direction_of, DIRECTION_COUNT}
 #import welkin::spherical_harmonics::harmonics
 
@@ -23,32 +25,84 @@ fn keep_direction(index: u32, horizon_mu: f32, mu_s: f32) {
     directions[index] = vec4<f32>(horizontal, direction.mu, direction.solid_angle_sr);
 }
 
+// Mean over both mirror images of nu² is a sum over xx, yy, zz and xz of one direction times those of the other; last: 1.
+const MOMENT_COUNT: u32 = 5u;
+var<workgroup> field_moments: array<vec3<f32>, MOMENT_COUNT>;
+var<workgroup> direction_moments: array<f32, MOMENT_COUNT>;
+
+fn products(direction: vec3<f32>) -> array<f32, MOMENT_COUNT> {
+    let squares = direction * direction;
+    return array<f32, MOMENT_COUNT>(squares.x, squares.y, squares.z, direction.x * direction.z, 1.0);
+}
+
+// One of the moments, found by one invocation of each between two barriers.
+fn keep_moment(index: u32) {
+    var of_field = vec3<f32>(0.0);
+    var of_directions = 0.0;
+    for (var i = 0u; i < DIRECTION_COUNT; i++) {
+        var product = products(directions[i].xyz);
+        of_field += directions[i].w * product[index] * field[i];
+        of_directions += directions[i].w * product[index];
+    }
+    field_moments[index] = of_field;
+    direction_moments[index] = of_directions;
+}
+
+// Whether a phase function is a lobe or two of the form scale (1 + quadratic nu²).
+fn is_quadratic(constituent: u32) -> bool {
+    var slope = 0.0;
+    for (var i = 0u; i < LOBE_COUNT; i++) {
+        slope += abs(atmosphere.constituents[constituent].lobes[i].slope);
+    }
+    return slope == 0.0;
+}
+
+// int p (I(w') - I) dw' of such a function.
+fn quadratic_convolution(constituent: u32, here: vec3<f32>, radiance: vec3<f32>) -> vec3<f32> {
+    var product = products(here);
+    var squares = vec3<f32>(0.0);
+    for (var m = 0u; m < 4u; m++) {
+        let twice = select(1.0, 2.0, m == 3u);
+        squares += twice * product[m] * (field_moments[m] - radiance * direction_moments[m]);
+    }
+    let even = field_moments[4] - radiance * direction_moments[4];
+    var sum = vec3<f32>(0.0);
+    for (var i = 0u; i < LOBE_COUNT; i++) {
+        let lobe = atmosphere.constituents[constituent].lobes[i];
+        sum += lobe.scale_per_sr * (even + lobe.quadratic * squares);
+    }
+    return sum;
+}
+
 // For each group of scatterers with one density profile: sum_c b_c int p_c I dw' / sum_c b_c.
 fn source_function(index: u32) -> array<vec3<f32>, PROFILE_GROUP_COUNT> {
     let here = directions[index].xyz;
     let radiance = field[index];
-    var sums: array<vec3<f32>, SCATTERER_SLOTS>;
-    // How much of each p, of 1, the sums count.
-    var counted: array<f32, SCATTERER_SLOTS>;
-    for (var j = 0u; j < DIRECTION_COUNT; j++) {
-        let there = directions[j];
-        let half_sr = select(0.5 * there.w, 0.0, j == index);
-        let difference = half_sr * (field[j] - radiance);
-        // Both mirror images of the other direction.
-        let level = here.x * there.x + here.z * there.z;
-        let across = here.y * there.y;
-        let nu = min(vec2<f32>(level + across, level - across), vec2<f32>(1.0));
-        for (var c = 0u; c < SCATTERER_COUNT; c++) {
-            let phase = phase_per_sr(c, nu.x) + phase_per_sr(c, nu.y);
-            sums[c] += phase * difference;
-            counted[c] += phase * half_sr;
-        }
-    }
     var convolved: array<vec3<f32>, PROFILE_GROUP_COUNT>;
     var scattering: array<vec3<f32>, PROFILE_GROUP_COUNT>;
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
+        var sum = vec3<f32>(0.0);
+        let quadratic = is_quadratic(c);
+        if quadratic {
+            sum = quadratic_convolution(c, here, radiance);
+        }
+        // A bound of zero leaves the loop out also where devices run both sides of a branch.
+        let count = select(DIRECTION_COUNT, 0u, quadratic);
+        // How much of p, of 1, the sum counts.
+        var counted = 0.0;
+        for (var j = 0u; j < count; j++) {
+            let there = directions[j];
+            let half_sr = select(0.5 * there.w, 0.0, j == index);
+            // Both mirror images of the other direction.
+            let level = here.x * there.x + here.z * there.z;
+            let across = here.y * there.y;
+            let nu = min(vec2<f32>(level + across, level - across), vec2<f32>(1.0));
+            let phase = phase_per_sr(c, nu.x) + phase_per_sr(c, nu.y);
+            sum += phase * half_sr * (field[j] - radiance);
+            counted += phase * half_sr;
+        }
         let group = atmosphere.constituents[c].profile_group;
-        convolved[group] += sums[c] / max(counted[c], 1.0) * atmosphere.constituents[c].scattering_per_m;
+        convolved[group] += sum / max(counted, 1.0) * atmosphere.constituents[c].scattering_per_m;
         scattering[group] += atmosphere.constituents[c].scattering_per_m;
     }
     for (var g = 0u; g < PROFILE_GROUP_COUNT; g++) {

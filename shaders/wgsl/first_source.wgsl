@@ -3,7 +3,9 @@
 // One workgroup per (altitude, mu_s), one invocation per direction; for unit irradiance of the light.
 
 #import welkin::atmosphere::{atmosphere, PROFILE_GROUP_COUNT}
-#import welkin::convolution::{field, harmonic_of_field, irradiance, keep_direction, mean_of_field, source_function}
+#import welkin::convolution::{
+    field, harmonic_of_field, irradiance, keep_direction, keep_moment, mean_of_field, source_function, MOMENT_COUNT
+}
 #import welkin::field_radiance::{first_order_radiance, ray_from}
 #import welkin::geometry::horizon_mu
 #import welkin::glow::phases_towards
@@ -34,6 +36,10 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
         let direction = direction_of(i, mu_h, here.mu);
         let ray = ray_from(here.altitude_m, here.mu, direction.mu, cos(direction.phi_rad), direction.hits_ground);
         field[i] = first_order_radiance(ray, direction.hits_ground, phases_towards(i, mu_h, here.mu));
+    }
+    workgroupBarrier();
+    if invocation < MOMENT_COUNT {
+        keep_moment(invocation);
     }
     workgroupBarrier();
     for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {

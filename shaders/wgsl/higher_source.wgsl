@@ -4,7 +4,9 @@
 // from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric.
 
 #import welkin::atmosphere::{atmosphere, PROFILE_GROUP_COUNT}
-#import welkin::convolution::{field, harmonic_of_field, irradiance, keep_direction, mean_of_field, source_function}
+#import welkin::convolution::{
+    field, harmonic_of_field, irradiance, keep_direction, keep_moment, mean_of_field, source_function, MOMENT_COUNT
+}
 #import welkin::field_radiance::{next_order_radiance, ray_from}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
@@ -59,6 +61,10 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
         let direction = direction_of(i, mu_h, here.mu);
         let ray = ray_from(here.altitude_m, here.mu, direction.mu, cos(direction.phi_rad), direction.hits_ground);
         field[i] = next_order_radiance(previous_order, ray, direction.hits_ground);
+    }
+    workgroupBarrier();
+    if invocation < MOMENT_COUNT {
+        keep_moment(invocation);
     }
     workgroupBarrier();
     let rest = remainder(texel.xy);
