@@ -12,7 +12,7 @@ use crate::gpu::{Clock, DeviceRequest, Gpu, Pace};
 use crate::passes::{
     self, CLOUDS, FRAME, Pass, Recording, RenderError, Resources, ShaderSources, TABLES, record_probe,
 };
-use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Settings, Surface};
+use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Settings, Surface, TableFormat};
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Camera, Light, Scene};
 
@@ -100,6 +100,11 @@ impl Renderer {
             group: 0,
             foregrounds: 0,
         })
+    }
+
+    /// Keeps tables no wider than this, as on a device that can interpolate nothing wider.
+    pub fn limit_tables(&mut self, widest: TableFormat) {
+        self.resources.widest_tables = widest;
     }
 
     /// The device.
@@ -190,6 +195,7 @@ impl Renderer {
 
     /// Plans and runs passes, and then a probe of so many rays.
     fn execute(&mut self, label: &str, facts: &Facts, passes: &[&Pass], rays: usize) -> Result<Timings, RenderError> {
+        let facts = &facts.clone().with_tables_up_to(self.resources.widest_tables);
         let declarations: Vec<_> = passes.iter().map(|pass| pass.declaration).collect();
         let plan = Plan::new(facts, &self.history, &declarations);
         self.release_what_nobody_writes(&plan, passes);

@@ -10,16 +10,20 @@
 // with the distance, and that is the sky's, exactly, where the ray ends. Optical depth is kept alike, in a table of its
 // own with more rows: relative to that of the whole ray at constant density.
 //
+// Where the planet's shadow lies across a ray, light that was scattered once begins, or stops, at its edge. Its slices
+// therefore divide the lit part of the ray alone, and what they hold is over the lit share of the way too.
+//
 // Definitions: AIR (there is any), LIT, MULTIPLE_SCATTERING, EMISSION; see welkin::sky.
 
-#import welkin::atmosphere::{phase_per_sr, SCATTERER_COUNT}
+#import welkin::atmosphere::{atmosphere, phase_per_sr, SCATTERER_COUNT}
+#import welkin::geometry::shadow_interval_m
 #import welkin::mapping
-#import welkin::march::view_ray
+#import welkin::march::{view_ray, AirRay}
 #import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
 #import welkin::sky::{
     emission_radiance, length_m, sky_view, view_optical_depth, SkyDirection, LAYER_COUNT, MULTIPLE_LAYER, SINGLE_LAYER
 }
-#import welkin::tables::table_sampler
+#import welkin::tables::{sample_exactly, table_sampler}
 
 // x: azimuth of each light; y: zenith angle of the sky half, then of the ground half; z: slices of each layer of the
 // sky view.
@@ -42,6 +46,8 @@ struct Reach {
     emission: vec3<f32>,
     // The slices' unit coordinate.
     slice: f32,
+    // From where the ray enters the air, m.
+    along_m: f32,
     // Whether the point lies where the ray leaves the air or meets the planet, or behind.
     at_end: bool,
 }
@@ -65,35 +71,83 @@ fn part_coordinate(unit: f32, part: u32, parts: u32, size: u32) -> f32 {
     return (f32(part) * texels + 0.5 + unit * (texels - 1.0)) / f32(size);
 }
 
+// Where a distance along a ray lies in the table of optical depth.
+fn optical_depth_uv(direction: SkyDirection, slice: f32) -> vec2<f32> {
+    let unit = mapping::sky_view_to_unit(direction.zenith_rad, 0.0, direction.below_horizon, observer.view);
+    let size = textureDimensions(froxel_optical_depth);
+    return vec2<f32>(
+        part_coordinate(slice, 0u, 1u, size.x),
+        part_coordinate(unit.y, u32(direction.below_horizon), 2u, size.y),
+    );
+}
+
+// Optical depth of a view ray up to a distance from where it enters the air.
+fn tau_before(direction: SkyDirection, ray: AirRay, along_m: f32) -> vec3<f32> {
+    let slice = mapping::slice_unit(along_m, mapping::slices_of(ray.length_m, ray.tangent_m));
+    let relative = textureSampleLevel(froxel_optical_depth, table_sampler, optical_depth_uv(direction, slice), 0.0).rgb;
+    return along_m / ray.length_m * view_optical_depth(direction) * relative;
+}
+
 fn reach_of(direction: SkyDirection, distance_m: f32) -> Reach {
-    var reach = Reach(vec3<f32>(1.0), vec3<f32>(1.0), emission_radiance(direction), 1.0, true);
+    var reach = Reach(vec3<f32>(1.0), vec3<f32>(1.0), emission_radiance(direction), 1.0, 0.0, true);
 #ifdef AIR
     let ray = view_ray(
         observer.altitude_m, cos(direction.zenith_rad), light_mu_s(0u), direction.nu, direction.below_horizon
     );
     let whole = view_optical_depth(direction);
     let along_m = clamp(distance_m - ray.start_m, 0.0, ray.length_m);
+    reach.along_m = along_m;
     reach.at_end = distance_m - ray.start_m >= ray.length_m;
     if reach.at_end {
         reach.transmittance = exp(-whole);
         return reach;
     }
     reach.slice = mapping::slice_unit(along_m, mapping::slices_of(ray.length_m, ray.tangent_m));
-    let unit = mapping::sky_view_to_unit(direction.zenith_rad, 0.0, direction.below_horizon, observer.view);
-    let size = textureDimensions(froxel_optical_depth);
-    let uv = vec2<f32>(
-        part_coordinate(reach.slice, 0u, 1u, size.x),
-        part_coordinate(unit.y, u32(direction.below_horizon), 2u, size.y),
-    );
+    let uv = optical_depth_uv(direction, reach.slice);
     let share_of_way = along_m / ray.length_m;
     let tau = share_of_way * whole * textureSampleLevel(froxel_optical_depth, table_sampler, uv, 0.0).rgb;
     reach.transmittance = exp(-tau);
     reach.opacity_share = opacity_ratio(tau, whole, share_of_way);
 #ifdef EMISSION
-    reach.emission = share_of_way * textureSampleLevel(froxel_emission, table_sampler, uv, 0.0).rgb;
+    reach.emission = share_of_way * sample_exactly(froxel_emission, uv);
 #endif
 #endif
     return reach;
+}
+
+// The lit part of a ray: what is left of it without the planet's shadow.
+struct LitWay {
+    // Where the shadow lies on the ray, m; start >= end when nowhere.
+    shadow_m: vec2<f32>,
+    // Lit length of the whole ray, m.
+    total_m: f32,
+    slices: mapping::Slices,
+}
+
+// Lit length of a ray up to a distance, m.
+fn lit_length_m(distance_m: f32, shadow_m: vec2<f32>) -> f32 {
+    return distance_m - clamp(distance_m - shadow_m.x, 0.0, max(shadow_m.y - shadow_m.x, 0.0));
+}
+
+// The distance up to which so much of a ray is lit; at the shadow's edge that before it, where there is light before it.
+fn distance_of_lit_m(lit_m: f32, shadow_m: vec2<f32>) -> f32 {
+    let behind = shadow_m.x <= 0.0 || lit_m > shadow_m.x + 1e-6 * shadow_m.y;
+    return lit_m + select(0.0, shadow_m.y - shadow_m.x, shadow_m.x < shadow_m.y && behind);
+}
+
+fn lit_way(ray: AirRay) -> LitWay {
+    let shadow_m = shadow_interval_m(
+        atmosphere.radius_m, ray.altitude_m, ray.mu, ray.mu_s, ray.nu, ray.length_m
+    );
+    // A dark ray has a length yet, so that its neighbours have something to interpolate with.
+    let total_m = max(lit_length_m(ray.length_m, shadow_m), 1e-3);
+    let lowest_m = lit_length_m(clamp(ray.tangent_m, 0.0, ray.length_m), shadow_m);
+    return LitWay(shadow_m, total_m, mapping::slices_of(total_m, lowest_m));
+}
+
+// How much more of the lit way than of the whole way lies before a point.
+fn lit_share(distance_m: f32, lit_m: f32, ray_length_m: f32, way: LitWay) -> f32 {
+    return lit_m / way.total_m * ray_length_m / max(distance_m, 1e-3);
 }
 
 // A layer of the sky view, over the length of air, as far as it comes from before a point.
@@ -102,6 +156,23 @@ fn sky_view_before(light: u32, layer: u32, direction: SkyDirection, reach: Reach
     if reach.at_end {
         return whole;
     }
+    var slice = reach.slice;
+    var share = reach.opacity_share;
+    if layer >= SINGLE_LAYER {
+        let mu = cos(direction.zenith_rad);
+        let ray = view_ray(observer.altitude_m, mu, light_mu_s(light), direction.nu, direction.below_horizon);
+        let way = lit_way(ray);
+        let lit_m = lit_length_m(reach.along_m, way.shadow_m);
+        slice = mapping::slice_unit(lit_m, way.slices);
+        // In the shadow nothing is added to what comes from before it.
+        let in_shadow = reach.along_m > way.shadow_m.x && reach.along_m < way.shadow_m.y;
+        let counts_m = select(reach.along_m, way.shadow_m.x, in_shadow);
+        if in_shadow {
+            let whole_tau = view_optical_depth(direction);
+            share = opacity_ratio(tau_before(direction, ray, counts_m), whole_tau, counts_m / ray.length_m);
+        }
+        share *= lit_share(counts_m, lit_m, ray.length_m, way);
+    }
     let unit = mapping::sky_view_to_unit(
         direction.zenith_rad, direction.azimuth_rad, direction.below_horizon, observer.view
     );
@@ -109,9 +180,9 @@ fn sky_view_before(light: u32, layer: u32, direction: SkyDirection, reach: Reach
     let uvw = vec3<f32>(
         part_coordinate(unit.x, light, LIGHT_COUNT, size.x),
         part_coordinate(unit.y, u32(direction.below_horizon), 2u, size.y),
-        part_coordinate(reach.slice, layer, LAYER_COUNT, size.z),
+        part_coordinate(slice, layer, LAYER_COUNT, size.z),
     );
-    return whole * reach.opacity_share * exp(textureSampleLevel(froxel_light, table_sampler, uvw, 0.0).rgb);
+    return whole * share * exp(textureSampleLevel(froxel_light, table_sampler, uvw, 0.0).rgb);
 }
 
 // Radiance that the air before a point sends to the observer, 1/sr: per unit irradiance of the light.

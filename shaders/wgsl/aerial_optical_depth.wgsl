@@ -9,10 +9,14 @@
 #import welkin::atmosphere::extinction_at
 #import welkin::emission::source_at
 #import welkin::mapping
-#import welkin::march::{altitude_at, view_ray, AirRay}
+#import welkin::march::{altitude_at, leg_end_m, view_ray, AirRay, LEG_COUNT}
 #import welkin::observer::observer
 
+#ifdef HALF_TABLES
+@group(0) @binding(30) var froxel_optical_depth_image: texture_storage_2d<rgba16float, write>;
+#else
 @group(0) @binding(30) var froxel_optical_depth_image: texture_storage_2d<rgba32float, write>;
+#endif
 #ifdef EMISSION
 @group(0) @binding(31) var froxel_emission_image: texture_storage_2d<rgba32float, write>;
 #endif
@@ -26,18 +30,27 @@ struct Sum {
     emission: vec3<f32>,
 }
 
+// Extinction at a point of a panel whose middle lies elsewhere: at its end a layer may end too, so a little inside.
+fn extinction_within(ray: AirRay, at_m: f32, middle_m: f32) -> vec3<f32> {
+#ifdef LAYERS
+    return extinction_at(altitude_at(ray, mix(at_m, middle_m, 1e-3)));
+#else
+    return extinction_at(altitude_at(ray, at_m));
+#endif
+}
+
 fn add_stretch(sum: ptr<function, Sum>, ray: AirRay, start_m: f32, end_m: f32) {
     let panel_m = (end_m - start_m) / f32(PANEL_COUNT);
     if panel_m <= 0.0 {
         return;
     }
-    var before = extinction_at(altitude_at(ray, start_m));
+    var before = extinction_within(ray, start_m, start_m + 0.5 * panel_m);
     for (var i = 0u; i < PANEL_COUNT; i++) {
         let from_m = start_m + f32(i) * panel_m;
         let middle_m = from_m + 0.5 * panel_m;
         let middle_altitude_m = altitude_at(ray, middle_m);
         let middle = extinction_at(middle_altitude_m);
-        let after = extinction_at(altitude_at(ray, from_m + panel_m));
+        let after = extinction_within(ray, from_m + panel_m, middle_m);
         let tau = panel_m / 6.0 * (before + 4.0 * middle + after);
 #ifdef EMISSION
         let source = source_at(ray, middle_m, middle_altitude_m);
@@ -48,13 +61,16 @@ fn add_stretch(sum: ptr<function, Sum>, ray: AirRay, start_m: f32, end_m: f32) {
     }
 }
 
-// Adds a slice. Air is densest at the ray's lowest point, so no panel straddles it.
+// Adds a slice. No panel straddles the ray's lowest point, where air is densest, or a layer's bounds.
 fn add_slice(sum: ptr<function, Sum>, ray: AirRay, slices: mapping::Slices, slice: u32, step: f32) -> f32 {
     let start_m = mapping::slice_distance_m(f32(slice - 1u) * step, slices);
     let end_m = mapping::slice_distance_m(f32(slice) * step, slices);
-    let cut_m = clamp(slices.lowest_m, start_m, end_m);
-    add_stretch(sum, ray, start_m, cut_m);
-    add_stretch(sum, ray, cut_m, end_m);
+    var from_m = start_m;
+    for (var cut = 0u; cut < LEG_COUNT; cut++) {
+        let to_m = clamp(leg_end_m(ray, cut), from_m, end_m);
+        add_stretch(sum, ray, from_m, to_m);
+        from_m = to_m;
+    }
     return end_m;
 }
 

@@ -12,6 +12,7 @@
 //   ABSORBING_EXPONENTIAL_END, ABSORBING_TENT_END   where each group ends in the array
 //   LOBE_COUNT          lobes of the most complex phase function
 //   PROFILE_GROUP_COUNT groups of scatterers that share a density profile
+//   LAYERS              some constituent's density is a layer; OMIT_LAYERS: such constituents do not count
 
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
 
@@ -28,6 +29,8 @@ const SCATTERER_SLOTS: u32 = max(SCATTERER_COUNT, 1u);
 const LOBE_COUNT: u32 = #{LOBE_COUNT}u;
 const MAX_LOBES: u32 = 2u;
 const PROFILE_GROUP_COUNT: u32 = #{PROFILE_GROUP_COUNT}u;
+const SCATTERING_LAYER_COUNT: u32 = SCATTERER_COUNT - SCATTERING_TENT_END;
+const LAYER_COUNT: u32 = SCATTERING_LAYER_COUNT + CONSTITUENT_COUNT - ABSORBING_TENT_END;
 
 struct Constituent {
     scattering_per_m: vec3<f32>,
@@ -91,19 +94,37 @@ fn densities(altitude_m: f32) -> array<f32, CONSTITUENT_SLOTS> {
     for (var i = SCATTERING_EXPONENTIAL_END; i < SCATTERING_TENT_END; i++) {
         density[i] = tent_constituent(i, h);
     }
+#ifndef OMIT_LAYERS
     for (var i = SCATTERING_TENT_END; i < SCATTERER_COUNT; i++) {
         density[i] = layer_constituent(i, h);
     }
+#endif
     for (var i = SCATTERER_COUNT; i < ABSORBING_EXPONENTIAL_END; i++) {
         density[i] = exponential_constituent(i, h);
     }
     for (var i = ABSORBING_EXPONENTIAL_END; i < ABSORBING_TENT_END; i++) {
         density[i] = tent_constituent(i, h);
     }
+#ifndef OMIT_LAYERS
     for (var i = ABSORBING_TENT_END; i < CONSTITUENT_COUNT; i++) {
         density[i] = layer_constituent(i, h);
     }
+#endif
     return density;
+}
+
+// The constituent of a layer, counted from 0.
+fn constituent_of_layer(layer: u32) -> u32 {
+    if layer < SCATTERING_LAYER_COUNT {
+        return SCATTERING_TENT_END + layer;
+    }
+    return ABSORBING_TENT_END + layer - SCATTERING_LAYER_COUNT;
+}
+
+// Bottom and top of a layer, m.
+fn layer_bounds_m(layer: u32) -> vec2<f32> {
+    let i = constituent_of_layer(layer);
+    return vec2<f32>(atmosphere.constituents[i].profile_a, atmosphere.constituents[i].profile_b);
 }
 
 // c at an altitude, 1/m.

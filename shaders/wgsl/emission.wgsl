@@ -21,7 +21,7 @@
 #import welkin::geometry::distance_to_shell_from_above
 #import welkin::mapping
 #import welkin::march::{altitude_at, AirRay}
-#import welkin::tables::table_sampler
+#import welkin::tables::sample_exactly
 
 const EMITTER_COUNT: u32 = #{EMITTER_COUNT}u;
 const EMITTING_EXPONENTIAL_END: u32 = #{EMITTING_EXPONENTIAL_END}u;
@@ -66,7 +66,7 @@ fn field_at(column: u32, altitude_m: f32) -> vec3<f32> {
     let size = vec2<f32>(textureDimensions(emission_field));
     let y = mapping::multiple_scattering_to_unit(altitude_m, 0.0, atmosphere.top_m, atmosphere.sun_warp).y;
     let uv = mapping::inset(vec2<f32>(f32(column) / (size.x - 1.0), y), size);
-    return textureSampleLevel(emission_field, table_sampler, uv, 0.0).rgb;
+    return sample_exactly(emission_field, uv);
 }
 #endif
 

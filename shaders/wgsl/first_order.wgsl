@@ -10,7 +10,11 @@
 #import welkin::spherical_harmonics::COEFFICIENT_COUNT
 #import welkin::tables::IRRADIANCE_LAYER
 
+#ifdef HALF_TABLES
+@group(0) @binding(6) var first_order: texture_storage_2d_array<rgba16float, write>;
+#else
 @group(0) @binding(6) var first_order: texture_storage_2d_array<rgba32float, write>;
+#endif
 
 // Below this, light is dark; it keeps logarithms finite.
 const DARK: f32 = 1e-30;

@@ -17,7 +17,11 @@
 
 const INVOCATION_COUNT: u32 = #{GRID_INVOCATION_COUNT}u;
 
+#ifdef HALF_TABLES
+@group(0) @binding(6) var first_source: texture_storage_2d_array<rgba16float, write>;
+#else
 @group(0) @binding(6) var first_source: texture_storage_2d_array<rgba32float, write>;
+#endif
 
 // Below this, light is dark; it keeps logarithms finite.
 const DARK: f32 = 1e-30;

@@ -58,6 +58,20 @@ fn air_length_m(radius_m: f32, top_m: f32, altitude_m: f32, mu: f32, hits_ground
     return distance_to_shell_from_below(radius_m, start_m, start_mu, top_m);
 }
 
+// Distances at which a ray enters and leaves the inside of a shell, m, as far as they lie ahead; equal when it does not.
+fn shell_crossings_m(radius_m: f32, altitude_m: f32, mu: f32, shell_m: f32) -> vec2<f32> {
+    let gap = (shell_m - altitude_m) * (2.0 * radius_m + shell_m + altitude_m);
+    let b = (radius_m + altitude_m) * mu;
+    let discriminant = b * b + gap;
+    if discriminant <= 0.0 {
+        return vec2<f32>(0.0);
+    }
+    // Stable quadratic roots: the smaller in magnitude through the product of both.
+    let q = -(b + select(-1.0, 1.0, b >= 0.0) * sqrt(discriminant));
+    let other = select(-gap / q, q, q == 0.0);
+    return max(vec2<f32>(min(q, other), max(q, other)), vec2<f32>(0.0));
+}
+
 // The part of a ray inside the planet's shadow, as distances (start, end) in [0, length_m]; start >= end when lit.
 //
 // The shadow of a sphere in parallel light is a half-infinite cylinder, a convex set: a ray meets it in one interval,

@@ -14,9 +14,17 @@
 @group(0) @binding(6) var previous_order: texture_2d_array<f32>;
 @group(0) @binding(7) var previous_sum: texture_2d_array<f32>;
 #ifndef CLOSE_SERIES
+#ifdef HALF_TABLES
+@group(0) @binding(8) var order: texture_storage_2d_array<rgba16float, write>;
+#else
 @group(0) @binding(8) var order: texture_storage_2d_array<rgba32float, write>;
 #endif
+#endif
+#ifdef HALF_TABLES
+@group(0) @binding(9) var sum: texture_storage_2d_array<rgba16float, write>;
+#else
 @group(0) @binding(9) var sum: texture_storage_2d_array<rgba32float, write>;
+#endif
 
 // Below this, light is dark; it keeps logarithms finite.
 const DARK: f32 = 1e-30;

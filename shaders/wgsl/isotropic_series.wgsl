@@ -20,7 +20,11 @@
 }
 #import welkin::tables::{direct_ground_irradiance, optical_depth_to_top, IRRADIANCE_LAYER}
 
+#ifdef HALF_TABLES
+@group(0) @binding(6) var isotropic_series: texture_storage_2d_array<rgba16float, write>;
+#else
 @group(0) @binding(6) var isotropic_series: texture_storage_2d_array<rgba32float, write>;
+#endif
 
 // Below this, light is dark; it keeps logarithms finite.
 const DARK: f32 = 1e-30;

@@ -1,10 +1,10 @@
 #define_import_path welkin::march
 // The quadrature along a view ray, shared by every pass that integrates through the air.
 //
-// A ray is cut where its integrand has a kink: at its tangent point and where it crosses the planet's shadow. Each of
-// the at most four legs is integrated by Gauss-Legendre in v, where distance grows with v² from the leg's low end, so
-// that nodes crowd where the air is dense. Optical depth between nodes is Simpson's rule in v, which reuses the
-// extinction at both nodes. Measured in docs/accuracy.md.
+// A ray is cut where its integrand has a kink or a jump: at its tangent point, where it crosses the planet's shadow, and
+// at the bounds of layers. Each of the legs, at most four where there is no layer, is integrated by Gauss-Legendre in v,
+// where distance grows with v² from the leg's low end, so that nodes crowd where the air is dense. Optical depth between
+// nodes is Simpson's rule in v, which reuses the extinction at both nodes. Measured in docs/accuracy.md.
 //
 //   for (var i = 0u; i < LEG_COUNT; i++) {
 //       var leg = leg_of(ray, i);
@@ -16,13 +16,14 @@
 //       leg_finish(&leg, ray, &optical_depth);
 //   }
 //
-// Definitions: NODE_COUNT, Gauss-Legendre nodes per leg.
+// Definitions: NODE_COUNT, Gauss-Legendre nodes per leg; LAYERS (some constituent's density is a layer).
 
-#import welkin::atmosphere::{atmosphere, extinction_at}
+#import welkin::atmosphere::{atmosphere, extinction_at, layer_bounds_m, LAYER_COUNT}
 #import welkin::geometry
 
 const NODE_COUNT: u32 = #{NODE_COUNT}u;
-const LEG_COUNT: u32 = 4u;
+// A ray crosses each bound of a layer twice at most.
+const LEG_COUNT: u32 = 4u + 4u * LAYER_COUNT;
 
 struct GaussNode {
     // In ]0, 1[.
@@ -48,7 +49,7 @@ struct AirRay {
     tangent_m: f32,
     // Where the planet hides the light; start >= end when nowhere.
     shadow_m: vec2<f32>,
-    // Ends of the legs in ascending order.
+    // Ends of the legs in ascending order, those at bounds of layers left out.
     leg_ends_m: vec4<f32>,
 }
 
@@ -58,6 +59,11 @@ struct Leg {
     descending: bool,
     // Whether the planet hides the light from this leg.
     dark: bool,
+#ifdef LAYERS
+    // What the leg lies between: no rounding carries a node across a jump.
+    floor_m: f32,
+    ceiling_m: f32,
+#endif
     // Where the quadrature stands: v, and extinction times v there.
     v: f32,
     weighted_extinction_per_m: vec3<f32>,
@@ -145,20 +151,73 @@ fn sorted_leg_ends_m(ray: AirRay) -> vec4<f32> {
     return vec4<f32>(low, middle, high, ray.length_m);
 }
 
+#ifdef LAYERS
+// Where the leg that starts at a distance ends, m. Found anew for each leg: a sorted list of all of them would be an array,
+// which devices keep far from the processor.
+fn next_cut_m(ray: AirRay, start_m: f32) -> f32 {
+    let known_m = select(vec4<f32>(ray.length_m), ray.leg_ends_m, ray.leg_ends_m > vec4<f32>(start_m));
+    var end_m = min(min(known_m.x, known_m.y), min(known_m.z, known_m.w));
+    for (var layer = 0u; layer < LAYER_COUNT; layer++) {
+        let bounds_m = layer_bounds_m(layer);
+        let bottom_m = geometry::shell_crossings_m(atmosphere.radius_m, ray.altitude_m, ray.mu, bounds_m.x);
+        let top_m = geometry::shell_crossings_m(atmosphere.radius_m, ray.altitude_m, ray.mu, bounds_m.y);
+        let cuts_m = vec4<f32>(bottom_m, top_m);
+        let ahead_m = select(vec4<f32>(ray.length_m), cuts_m, cuts_m > vec4<f32>(start_m));
+        end_m = min(end_m, min(min(ahead_m.x, ahead_m.y), min(ahead_m.z, ahead_m.w)));
+    }
+    return end_m;
+}
+#endif
+
+// Where a leg ends, m.
+fn leg_end_m(ray: AirRay, index: u32) -> f32 {
+#ifdef LAYERS
+    var end_m = 0.0;
+    for (var i = 0u; i <= index; i++) {
+        end_m = next_cut_m(ray, end_m);
+    }
+    return end_m;
+#else
+    return ray.leg_ends_m[index];
+#endif
+}
+
 fn leg_of(ray: AirRay, index: u32) -> Leg {
-    let ends_m = array<f32, 5>(0.0, ray.leg_ends_m.x, ray.leg_ends_m.y, ray.leg_ends_m.z, ray.leg_ends_m.w);
     var leg: Leg;
-    leg.start_m = ends_m[index];
-    leg.length_m = ends_m[index + 1u] - leg.start_m;
+    leg.start_m = select(leg_end_m(ray, max(index, 1u) - 1u), 0.0, index == 0u);
+    leg.length_m = leg_end_m(ray, index) - leg.start_m;
     let middle_m = leg.start_m + 0.5 * leg.length_m;
     leg.descending = middle_m < ray.tangent_m;
     leg.dark = middle_m > ray.shadow_m.x && middle_m < ray.shadow_m.y;
     leg.v = select(0.0, 1.0, leg.descending);
+#ifdef LAYERS
+    leg.ceiling_m = atmosphere.top_m;
+    let middle_altitude_m = altitude_at(ray, middle_m);
+    for (var layer = 0u; layer < LAYER_COUNT; layer++) {
+        let bounds_m = layer_bounds_m(layer);
+        for (var side = 0u; side < 2u; side++) {
+            let above = bounds_m[side] > middle_altitude_m;
+            leg.ceiling_m = select(leg.ceiling_m, min(leg.ceiling_m, bounds_m[side]), above);
+            leg.floor_m = select(max(leg.floor_m, bounds_m[side]), leg.floor_m, above);
+        }
+    }
+#endif
     // Ascending legs start at v = 0, where the weight vanishes.
     if leg.descending {
-        leg.weighted_extinction_per_m = extinction_at(altitude_at(ray, leg.start_m));
+        leg.weighted_extinction_per_m = extinction_at(leg_altitude_m(leg, ray, leg.start_m));
     }
     return leg;
+}
+
+// Altitude at a distance within a leg.
+fn leg_altitude_m(leg: Leg, ray: AirRay, distance_m: f32) -> f32 {
+    let altitude_m = altitude_at(ray, distance_m);
+#ifdef LAYERS
+    // Three roundings inside the bounds.
+    return clamp(altitude_m, leg.floor_m * (1.0 + 4e-7), leg.ceiling_m * (1.0 - 4e-7));
+#else
+    return altitude_m;
+#endif
 }
 
 fn leg_is_empty(leg: Leg) -> bool {
@@ -178,7 +237,7 @@ fn leg_distance_m(leg: Leg, v: f32) -> f32 {
 // Moves to v and adds the optical depth of the way there.
 fn leg_move(leg: ptr<function, Leg>, ray: AirRay, v: f32, altitude_m: f32, optical_depth: ptr<function, vec3<f32>>) {
     let v_middle = 0.5 * (leg.v + v);
-    let middle = extinction_at(altitude_at(ray, leg_distance_m(*leg, v_middle))) * v_middle;
+    let middle = extinction_at(leg_altitude_m(*leg, ray, leg_distance_m(*leg, v_middle))) * v_middle;
     let end = extinction_at(altitude_m) * v;
     // dt = 2 length v dv, by Simpson's rule.
     let step = 2.0 * leg.length_m * abs(v - leg.v) / 6.0;
@@ -194,7 +253,7 @@ fn leg_advance(leg: ptr<function, Leg>, ray: AirRay, index: u32, optical_depth: 
     let v = select(gauss.abscissa, 1.0 - gauss.abscissa, leg.descending);
     var node: Node;
     node.distance_m = leg_distance_m(*leg, v);
-    node.altitude_m = altitude_at(ray, node.distance_m);
+    node.altitude_m = leg_altitude_m(*leg, ray, node.distance_m);
     node.weight_m = 2.0 * leg.length_m * v * gauss.weight;
     leg_move(leg, ray, v, node.altitude_m, optical_depth);
     return node;
@@ -203,7 +262,7 @@ fn leg_advance(leg: ptr<function, Leg>, ray: AirRay, index: u32, optical_depth: 
 // Moves to the end of the leg; optical_depth becomes that from the ray's start to there.
 fn leg_finish(leg: ptr<function, Leg>, ray: AirRay, optical_depth: ptr<function, vec3<f32>>) {
     let v = select(1.0, 0.0, leg.descending);
-    leg_move(leg, ray, v, altitude_at(ray, leg_distance_m(*leg, v)), optical_depth);
+    leg_move(leg, ray, v, leg_altitude_m(*leg, ray, leg_distance_m(*leg, v)), optical_depth);
 }
 
 // Directions at a node, in the frame of its own vertical, whose azimuth 0 points to the light.
@@ -245,7 +304,7 @@ fn optical_depth_along(ray: AirRay) -> vec3<f32> {
         for (var n = 1u; n <= FINE_PANELS; n++) {
             let share = f32(n) / f32(FINE_PANELS);
             let v = select(share, 1.0 - share, leg.descending);
-            leg_move(&leg, ray, v, altitude_at(ray, leg_distance_m(leg, v)), &optical_depth);
+            leg_move(&leg, ray, v, leg_altitude_m(leg, ray, leg_distance_m(leg, v)), &optical_depth);
         }
     }
     return optical_depth;

@@ -9,10 +9,14 @@
 #import welkin::mapping
 #import welkin::march::{air_length_m, cut_at_shadow, table_altitude_m, view_ray}
 #import welkin::observer::{light_mu_s, observer}
-#import welkin::sky::{layer_of, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER}
+#import welkin::sky::{layer_of, LN_SCALE, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER}
 #import welkin::view_integrals::{integrate, logarithm, Integrals}
 
+#ifdef HALF_TABLES
+@group(0) @binding(8) var sky_view_image: texture_storage_2d_array<rgba16float, write>;
+#else
 @group(0) @binding(8) var sky_view_image: texture_storage_2d_array<rgba32float, write>;
+#endif
 
 // x, y: direction; z: which half of the view sphere, of which light.
 @compute @workgroup_size(8, 8)
@@ -46,9 +50,10 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     }
     let per_m = 1.0 / max(air_length_m(altitude_m, mu, below_horizon), 1e-3);
     let first = layer_of(light, below_horizon);
-    textureStore(sky_view_image, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(logarithm(sum.multiple * per_m), 0.0));
+    let multiple = logarithm(sum.multiple * per_m) + LN_SCALE;
+    textureStore(sky_view_image, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(multiple, 0.0));
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
-        let single = logarithm(sum.single[c] * per_m);
+        let single = logarithm(sum.single[c] * per_m) + LN_SCALE;
         textureStore(sky_view_image, texel.xy, first + SINGLE_LAYER + c, vec4<f32>(single, 0.0));
     }
 }

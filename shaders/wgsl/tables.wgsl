@@ -2,9 +2,13 @@
 // Reading the tables that belong to a medium: optical depth to the top, and multiply scattered light.
 //
 // Definitions: AIR (there is any); SOURCE_FUNCTION (multiply scattered light is tabulated as a source function, not as
-// the field's spherical harmonics).
+// the field's spherical harmonics); LAYERS (some constituent's density is a layer); HALF_TABLES (most tables are half
+// floats).
 
-#import welkin::atmosphere::{atmosphere, CONSTITUENT_SLOTS, SCATTERER_COUNT}
+#import welkin::atmosphere::{
+    atmosphere, constituent_of_layer, layer_bounds_m, CONSTITUENT_SLOTS, LAYER_COUNT, SCATTERER_COUNT
+}
+#import welkin::geometry
 #import welkin::mapping
 #import welkin::march::LocalDirections
 #ifdef SOURCE_FUNCTION
@@ -14,17 +18,60 @@
 #import welkin::spherical_harmonics::{COEFFICIENT_COUNT, DEGREE_COUNT, degree_of, harmonics}
 
 @group(0) @binding(3) var table_sampler: sampler;
-// Optical depth from an altitude along a direction to the top, one component per band.
+// Optical depth from an altitude along a direction to the top, one component per band; without that of layers.
 @group(0) @binding(4) var optical_depth_table: texture_2d<f32>;
 
 // chi_l of each scatterer: 2 pi int p P_l dc, row by row.
 @group(0) @binding(5) var<storage, read> legendre_moments: array<f32>;
 
+#ifdef LAYERS
+// Length of a ray's part below a shell, m.
+fn below_shell_m(altitude_m: f32, mu: f32, shell_m: f32) -> f32 {
+    if shell_m <= 0.0 {
+        return 0.0;
+    }
+    let cuts_m = geometry::shell_crossings_m(atmosphere.radius_m, altitude_m, mu, shell_m);
+    return cuts_m.y - cuts_m.x;
+}
+
+// tau of the layers, which have a closed form and whose kinks no table could hold: the table leaves them out.
+fn optical_depth_of_layers(altitude_m: f32, mu: f32) -> vec3<f32> {
+    var tau = vec3<f32>(0.0);
+    for (var layer = 0u; layer < LAYER_COUNT; layer++) {
+        let bounds_m = min(layer_bounds_m(layer), vec2<f32>(atmosphere.top_m));
+        let length_m = below_shell_m(altitude_m, mu, bounds_m.y) - below_shell_m(altitude_m, mu, bounds_m.x);
+        tau += max(length_m, 0.0) * atmosphere.constituents[constituent_of_layer(layer)].extinction_per_m;
+    }
+    return tau;
+}
+#endif
+
+// A table that stays in 32-bit floats also where the others are half floats: some devices can only filter the latter.
+fn sample_exactly(table: texture_2d<f32>, uv: vec2<f32>) -> vec3<f32> {
+#ifdef HALF_TABLES
+    let last = vec2<f32>(textureDimensions(table) - 1u);
+    let place = clamp(uv * (last + 1.0) - 0.5, vec2<f32>(0.0), last);
+    let low = vec2<u32>(place);
+    let high = min(low + 1u, vec2<u32>(last));
+    let share = place - vec2<f32>(low);
+    let bottom = mix(textureLoad(table, low, 0), textureLoad(table, vec2<u32>(high.x, low.y), 0), share.x);
+    let top = mix(textureLoad(table, vec2<u32>(low.x, high.y), 0), textureLoad(table, high, 0), share.x);
+    return mix(bottom, top, share.y).rgb;
+#else
+    return textureSampleLevel(table, table_sampler, uv, 0.0).rgb;
+#endif
+}
+
 // tau from a point to the top along a direction above the horizon.
 fn optical_depth_to_top(altitude_m: f32, mu: f32) -> vec3<f32> {
     let unit = mapping::optical_depth_to_unit(altitude_m, mu, atmosphere.radius_m, atmosphere.top_m);
     let uv = mapping::inset(unit, vec2<f32>(textureDimensions(optical_depth_table)));
-    return textureSampleLevel(optical_depth_table, table_sampler, uv, 0.0).rgb;
+    let tau = textureSampleLevel(optical_depth_table, table_sampler, uv, 0.0).rgb;
+#ifdef LAYERS
+    return tau + optical_depth_of_layers(altitude_m, mu);
+#else
+    return tau;
+#endif
 }
 
 // Tables of multiply scattered light are of two kinds: welkin::source_table, or they hold, for unit irradiance of the

@@ -2,7 +2,7 @@
 //! itself, for every zenith angle and distance.
 
 use super::aerial_perspective::before_surfaces;
-use super::{Pass, Recording, RenderError, view_emission, view_optical_depth};
+use super::{Pass, Recording, RenderError, table_format, view_emission, view_optical_depth};
 use crate::gpu::{ImageFormat, ImageShape, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
@@ -26,8 +26,9 @@ pub const PASS: Pass = Pass {
             Fingerprint::of(&(facts.observer_altitude_m(), sampling, &facts.emitters, facts.orders))
         },
         bytes: |facts| {
-            let tables = if facts.emitters.is_empty() { 1 } else { 2 };
-            tables * shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes()
+            let exact = ImageFormat::Rgba32Float.texel_bytes();
+            let emission = if facts.emitters.is_empty() { 0 } else { exact };
+            shape(facts).texels() * (table_format(facts).texel_bytes() + emission)
         },
     },
     record,
@@ -47,7 +48,7 @@ fn need(facts: &Facts) -> Need {
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
     let [_, rows, _] = shape.extent();
-    let table = recording.resources.image("froxel_optical_depth", shape, ImageFormat::Rgba32Float)?;
+    let table = recording.resources.image("froxel_optical_depth", shape, table_format(recording.facts))?;
     let mut images = vec![("froxel_optical_depth_image", &table)];
     let emission = match recording.facts.emitters.is_empty() {
         true => None,

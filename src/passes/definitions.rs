@@ -5,7 +5,7 @@ use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count};
 use super::ordinates;
-use crate::plan::{Facts, Treatment};
+use crate::plan::{Facts, TableFormat, Treatment};
 use crate::probe::Orders;
 
 /// Invocations of a workgroup that every Vulkan device takes.
@@ -77,6 +77,8 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("SOURCE_FUNCTION", facts.treatment == Treatment::SourceFunction),
         ("CAPTURE", facts.outputs.capture),
         ("SURFACE", facts.surface.is_some()),
+        ("LAYERS", facts.groups.has_layers()),
+        ("HALF_TABLES", settings.table_format == TableFormat::Float16),
     ];
     let numbers = numbers.into_iter().chain(cloud_numbers);
     let numbers = numbers.map(|(name, value)| (name.to_owned(), Definition::U32(value)));

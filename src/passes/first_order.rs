@@ -1,7 +1,7 @@
 //! Light scattered once, or reflected once by the ground, as spherical harmonics at every altitude and sun.
 
-use super::{Pass, Recording, RenderError, multiple_scattering};
-use crate::gpu::{ImageFormat, ImageShape, Work};
+use super::{Pass, Recording, RenderError, multiple_scattering, table_format};
+use crate::gpu::{ImageShape, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, Need, Treatment};
 
 const NAME: &str = "first_order";
@@ -14,7 +14,7 @@ pub const PASS: Pass = Pass {
         reads: &["optical_depth_table"],
         writes: &["first_order"],
         inputs,
-        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+        bytes: |facts| shape(facts).texels() * table_format(facts).texel_bytes(),
     },
     record,
 };
@@ -44,6 +44,6 @@ pub(super) fn need(facts: &Facts) -> Need {
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
-    recording.resources.image("first_order", shape(recording.facts), ImageFormat::Rgba32Float)?;
+    recording.resources.image("first_order", shape(recording.facts), table_format(recording.facts))?;
     recording.dispatch(NAME, &[], &[], work(recording.facts))
 }

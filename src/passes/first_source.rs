@@ -1,7 +1,7 @@
 //! The source function of light scattered once, or reflected once by the ground, at every altitude and sun.
 
-use super::{Pass, Recording, RenderError, multiple_scattering};
-use crate::gpu::{ImageFormat, ImageShape, Work};
+use super::{Pass, Recording, RenderError, multiple_scattering, table_format};
+use crate::gpu::{ImageShape, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, Need, Treatment};
 
 const NAME: &str = "first_source";
@@ -14,7 +14,7 @@ pub const PASS: Pass = Pass {
         reads: &["optical_depth_table"],
         writes: &["first_source"],
         inputs,
-        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+        bytes: |facts| shape(facts).texels() * table_format(facts).texel_bytes(),
     },
     record,
 };
@@ -43,6 +43,6 @@ pub(super) fn need(facts: &Facts) -> Need {
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
-    recording.resources.image("first_source", shape(recording.facts), ImageFormat::Rgba32Float)?;
+    recording.resources.image("first_source", shape(recording.facts), table_format(recording.facts))?;
     recording.dispatch(NAME, &[], &[], work(recording.facts))
 }

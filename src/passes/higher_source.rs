@@ -1,8 +1,7 @@
 //! The source function of the second and all later orders, one order after the other, and the sum of all.
 
 use super::first_source::{inputs, need, shape, work};
-use super::{Pass, Recording, RenderError};
-use crate::gpu::ImageFormat;
+use super::{Pass, Recording, RenderError, table_format};
 use crate::plan::Declaration;
 
 const NAME: &str = "higher_source";
@@ -15,14 +14,14 @@ pub const PASS: Pass = Pass {
         reads: &["first_source", "optical_depth_table"],
         writes: &["multiple_scattering_table"],
         inputs,
-        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+        bytes: |facts| shape(facts).texels() * table_format(facts).texel_bytes(),
     },
     record,
 };
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
-    let format = ImageFormat::Rgba32Float;
+    let format = table_format(recording.facts);
     let mut order = recording.resources.image("first_source", shape, format)?;
     let mut sum = order.clone();
     for n in 2..recording.facts.settings.source_orders {

@@ -1,8 +1,7 @@
 //! Multiply scattered light as a geometric series of isotropic orders, the method of Hillaire 2020.
 
 use super::first_order::{inputs, shape, work};
-use super::{Pass, Recording, RenderError, multiple_scattering};
-use crate::gpu::ImageFormat;
+use super::{Pass, Recording, RenderError, multiple_scattering, table_format};
 use crate::plan::{Declaration, Treatment};
 
 const NAME: &str = "isotropic_series";
@@ -15,13 +14,13 @@ pub const PASS: Pass = Pass {
         reads: &["optical_depth_table"],
         writes: &["multiple_scattering_table"],
         inputs,
-        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+        bytes: |facts| shape(facts).texels() * table_format(facts).texel_bytes(),
     },
     record,
 };
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
-    let table = recording.resources.image("multiple_scattering_table", shape, ImageFormat::Rgba32Float)?;
+    let table = recording.resources.image("multiple_scattering_table", shape, table_format(recording.facts))?;
     recording.dispatch(NAME, &[], &[("isotropic_series", &table)], work(recording.facts))
 }

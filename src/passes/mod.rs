@@ -42,8 +42,8 @@ pub use recording::{Parameters, Recording};
 pub use resources::Resources;
 
 use crate::foreground::ForegroundError;
-use crate::gpu::GpuError;
-use crate::plan::{Declaration, PlanError};
+use crate::gpu::{GpuError, ImageFormat};
+use crate::plan::{Declaration, Facts, PlanError, TableFormat};
 use welkin_shaders::ShaderError;
 pub use welkin_shaders::Sources as ShaderSources;
 
@@ -98,6 +98,14 @@ pub const SHARED_IMAGES: [&str; 7] = [
     "picture_image",
 ];
 
+/// The format of tables: of all but a few that are small, or hold what no logarithm could.
+fn table_format(facts: &Facts) -> ImageFormat {
+    match facts.settings.table_format {
+        TableFormat::Float32 => ImageFormat::Rgba32Float,
+        TableFormat::Float16 => ImageFormat::Rgba16Float,
+    }
+}
+
 /// Why a scene could not be rendered.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
@@ -125,7 +133,7 @@ pub enum RenderError {
     },
     /// The device cannot interpolate the tables.
     #[error(
-        "device '{device}' cannot interpolate textures of 32-bit floats, which welkin's tables need; choose another with --device"
+        "device '{device}' can interpolate textures neither of 32-bit nor of half floats, which welkin's tables need; choose another with --device"
     )]
     NoLinearFilter {
         /// Its name.

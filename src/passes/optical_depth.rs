@@ -1,7 +1,7 @@
 //! Optical depth to the top of the atmosphere, for every altitude and direction above the horizon.
 
-use super::{Pass, Recording, RenderError};
-use crate::gpu::{ImageFormat, ImageShape, Work};
+use super::{Pass, Recording, RenderError, table_format};
+use crate::gpu::{ImageShape, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
 const NAME: &str = "optical_depth";
@@ -17,9 +17,15 @@ pub const PASS: Pass = Pass {
             let planet = &facts.scene.planet;
             let settings = &facts.settings;
             let medium = &facts.constituents;
-            Fingerprint::of(&(medium, planet.radius_m, planet.atmosphere_height_m, settings.optical_depth_size))
+            Fingerprint::of(&(
+                medium,
+                planet.radius_m,
+                planet.atmosphere_height_m,
+                settings.optical_depth_size,
+                settings.table_format,
+            ))
         },
-        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+        bytes: |facts| shape(facts).texels() * table_format(facts).texel_bytes(),
     },
     record,
 };
@@ -38,6 +44,6 @@ fn need(facts: &Facts) -> Need {
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
-    recording.resources.image("optical_depth_table", shape, ImageFormat::Rgba32Float)?;
-    recording.dispatch(NAME, &[], &[], Work::Invocations(shape.extent()))
+    recording.resources.image("optical_depth_table", shape, table_format(recording.facts))?;
+    recording.dispatch(NAME, &["OMIT_LAYERS"], &[], Work::Invocations(shape.extent()))
 }

@@ -9,6 +9,7 @@ use crate::gpu::{
     AddressMode, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, NextUse, Pace,
     Pipeline, Sampler,
 };
+use crate::plan::TableFormat;
 
 /// Images, buffers and pipelines that outlive a frame.
 pub struct Resources {
@@ -22,6 +23,8 @@ pub struct Resources {
     parked: Vec<Parked>,
     group: usize,
     pipelines: HashMap<(&'static str, Definitions), Pipeline>,
+    /// The widest format of tables that the device can interpolate.
+    pub widest_tables: TableFormat,
     /// How long submissions may be, where others use the device as well.
     pub pace: Option<Pace>,
     /// Images of the host's that a frame is drawn into, and what it does with them next.
@@ -33,6 +36,15 @@ pub struct Resources {
 struct Parked {
     images: BTreeMap<&'static str, GpuImage>,
     buffers: BTreeMap<&'static str, GpuBuffer>,
+}
+
+/// The widest format of tables that can be interpolated, by how 32-bit and half floats are filtered.
+fn widest_tables(filtering: [Filtering; 2]) -> Option<TableFormat> {
+    match filtering {
+        [Filtering::Linear, _] => Some(TableFormat::Float32),
+        [_, Filtering::Linear] => Some(TableFormat::Float16),
+        _ => None,
+    }
 }
 
 impl Resources {
@@ -47,10 +59,14 @@ impl Resources {
     /// The same with other shaders than the built-in ones.
     ///
     /// # Errors
-    /// [`RenderError::NoLinearFilter`] when the device cannot interpolate tables of 32-bit floats.
+    /// [`RenderError::NoLinearFilter`] when the device can interpolate tables of no format.
     pub fn with_shaders(gpu: Gpu, shaders: ShaderSources) -> Result<Self, RenderError> {
-        if gpu.filtering(ImageFormat::Rgba32Float) != Filtering::Linear {
-            return Err(RenderError::NoLinearFilter { device: gpu.info().name.clone() });
+        let device = gpu.info().name.clone();
+        let formats = [ImageFormat::Rgba32Float, ImageFormat::Rgba16Float].map(|format| gpu.filtering(format));
+        let widest_tables = widest_tables(formats).ok_or(RenderError::NoLinearFilter { device })?;
+        if widest_tables == TableFormat::Float16 {
+            let name = &gpu.info().name;
+            tracing::warn!("'{name}' cannot interpolate 32-bit floats: tables are half floats at every quality");
         }
         let sampler = gpu.sampler(Filter::Linear, [AddressMode::Clamp; 3])?;
         Ok(Self {
@@ -62,6 +78,7 @@ impl Resources {
             parked: Vec::new(),
             group: 0,
             pipelines: HashMap::new(),
+            widest_tables,
             pace: None,
             targets: Vec::new(),
         })
@@ -160,5 +177,18 @@ impl Resources {
         self.pipelines.insert(relevant, pipeline.clone());
         self.pipelines.insert(key, pipeline.clone());
         Ok(pipeline)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_device_that_interpolates_half_floats_alone_gets_tables_of_them() {
+        use Filtering::{Linear, NearestOnly};
+        assert_eq!(widest_tables([Linear, Linear]), Some(TableFormat::Float32));
+        assert_eq!(widest_tables([NearestOnly, Linear]), Some(TableFormat::Float16));
+        assert_eq!(widest_tables([NearestOnly, NearestOnly]), None);
     }
 }

@@ -1,7 +1,7 @@
 //! The integrals that the sky seen from the camera's altitude is made of, for every direction and light.
 
-use super::{Pass, Recording, RenderError, view_optical_depth};
-use crate::gpu::{ImageFormat, ImageShape, Work};
+use super::{Pass, Recording, RenderError, table_format, view_optical_depth};
+use crate::gpu::{ImageShape, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
 const NAME: &str = "sky_view";
@@ -21,7 +21,7 @@ pub const PASS: Pass = Pass {
             let settings = &facts.settings;
             Fingerprint::of(&(elevations, facts.observer_altitude_m(), settings.nodes_per_leg, settings.sky_view_size))
         },
-        bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+        bytes: |facts| shape(facts).texels() * table_format(facts).texel_bytes(),
     },
     record,
 };
@@ -54,7 +54,7 @@ pub(super) fn need(facts: &Facts) -> Need {
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
     let [width, height, _] = shape.extent();
-    let table = recording.resources.image("sky_view_table", shape, ImageFormat::Rgba32Float)?;
+    let table = recording.resources.image("sky_view_table", shape, table_format(recording.facts))?;
     let halves = 2 * recording.facts.light_slots();
     recording.dispatch(NAME, &[], &[("sky_view_image", &table)], Work::Invocations([width, height, halves]))
 }

@@ -6,7 +6,7 @@ use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::disc::is_wide;
 use super::faint::{Reach, reach};
-use super::{CloudScattering, PlanError, Settings, Skipping, Treatment};
+use super::{CloudScattering, PlanError, Settings, Skipping, TableFormat, Treatment};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, GroupColour, Light, Scene, WavelengthGroup};
 
@@ -74,6 +74,13 @@ pub struct ConstituentGroups {
     pub absorbing_tent_end: u32,
     /// Then layers that only absorb: all end here.
     pub count: u32,
+}
+
+impl ConstituentGroups {
+    /// Whether some constituent's density is a layer.
+    pub fn has_layers(&self) -> bool {
+        self.scatterer_count > self.scattering_tent_end || self.count > self.absorbing_tent_end
+    }
 }
 
 /// A scene, a quality and a request, with what follows from them.
@@ -172,6 +179,14 @@ impl<'a> Facts<'a> {
             return Err(PlanError::Unsupported { what: "clouds hang before and behind surfaces".to_owned() });
         }
         Ok(Self { surface, ..self })
+    }
+
+    /// With tables no wider than a device can interpolate.
+    pub fn with_tables_up_to(mut self, widest: TableFormat) -> Self {
+        if widest == TableFormat::Float16 {
+            self.settings.table_format = TableFormat::Float16;
+        }
+        self
     }
 
     /// How light in clouds is found: as the settings say, but for one order alone.

@@ -16,7 +16,7 @@ pub use declaration::{Declaration, Fingerprint, Need};
 pub use facts::{ConstituentGroups, Facts, Outputs, SpectralPart, Surface, Viewpoint};
 pub use multiple_scattering::{MultipleScattering, Treatment, error_in_shadow, expected_ringing};
 use serde::Serialize;
-pub use settings::{Directions, Quality, Settings, SourceGrid};
+pub use settings::{Directions, Quality, Settings, SourceGrid, TableFormat};
 pub use skipping::Skipping;
 
 /// Why a scene cannot be planned.

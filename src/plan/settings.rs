@@ -98,11 +98,31 @@ impl SourceGrid {
     }
 }
 
+/// How tables are stored on the device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TableFormat {
+    /// 32-bit floats.
+    Float32,
+    /// Half floats: half of the memory, and up to 0.1 % in what is bright; see docs/accuracy.md.
+    Float16,
+}
+
+impl fmt::Display for TableFormat {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Float32 => "32-bit floats",
+            Self::Float16 => "half floats",
+        })
+    }
+}
+
 /// Everything that trades accuracy for time. Sizes are (columns, rows) in texels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Gauss-Legendre nodes on each leg of a ray.
     pub nodes_per_leg: u32,
+    /// How tables are stored.
+    pub table_format: TableFormat,
     /// Optical depth: (direction, altitude).
     pub optical_depth_size: [u32; 2],
     /// Multiple scattering: (sun, altitude).
@@ -145,6 +165,7 @@ impl Settings {
         match quality {
             Quality::Low => Self {
                 nodes_per_leg: 8,
+                table_format: TableFormat::Float32,
                 optical_depth_size: [128, 48],
                 multiple_scattering_size: [32, 16],
                 degree_count: 3,
@@ -163,6 +184,7 @@ impl Settings {
             },
             Quality::Medium => Self {
                 nodes_per_leg: 10,
+                table_format: TableFormat::Float32,
                 optical_depth_size: [256, 64],
                 multiple_scattering_size: [48, 24],
                 degree_count: 3,
@@ -181,6 +203,7 @@ impl Settings {
             },
             Quality::High => Self {
                 nodes_per_leg: 12,
+                table_format: TableFormat::Float32,
                 optical_depth_size: [256, 128],
                 multiple_scattering_size: [64, 32],
                 degree_count: 3,
@@ -199,6 +222,7 @@ impl Settings {
             },
             Quality::Ultra => Self {
                 nodes_per_leg: 16,
+                table_format: TableFormat::Float32,
                 optical_depth_size: [512, 128],
                 multiple_scattering_size: [96, 32],
                 degree_count: 5,
