@@ -54,6 +54,25 @@ fn clear_air_gets_what_its_twilight_needs_and_haze_gets_the_source_function() {
 }
 
 #[test]
+fn every_table_that_is_made_says_how_large_it_is_at_every_quality() {
+    for quality in Quality::ALL {
+        for name in ["reference/earth-b-0.3.toml", "mars.toml", "moonlight.toml", "mountains.toml"] {
+            let plan = plan(&scene(name), Settings::of(quality));
+            let made = plan.passes.iter().filter(|pass| pass.decision == Decision::Run);
+            let tables: Vec<_> = made.map(|pass| (pass.name, pass.bytes)).collect();
+            assert!(tables.len() >= 5, "{name} at {quality}: {tables:?}");
+            assert!(tables.iter().all(|(_, bytes)| *bytes > 0), "{name} at {quality}: {tables:?}");
+            let skipped = plan.passes.iter().filter(|pass| pass.decision == Decision::Skip);
+            assert!(skipped.into_iter().all(|pass| pass.bytes == 0), "{name} at {quality}");
+        }
+    }
+    // Of the same scene finer tables are larger ones.
+    let bytes = |quality| plan(&scene("mars.toml"), Settings::of(quality)).passes.iter().map(|pass| pass.bytes).sum();
+    let all: Vec<u64> = Quality::ALL.map(bytes).to_vec();
+    assert!(all.is_sorted_by(|a, b| a < b), "{all:?}");
+}
+
+#[test]
 fn the_rule_follows_the_haze_and_not_the_molecules() {
     // Views into the planet's shadow may be off by any amount.
     let settings = Settings { shadow_limit: 1.0, ..Settings::of(Quality::High) };
