@@ -6,6 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 source scripts/setup.sh
 
 need_to_run
+if [[ ${1:-} == window ]]; then need_window; fi
 install_missing
 find_cargo
 cargo build --release --locked

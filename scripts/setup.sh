@@ -46,10 +46,22 @@ need_to_run() {
     need mesa-vulkan-drivers have_vulkan_driver
 }
 
+# What a window on X11 loads when it opens; on Wayland the first is enough.
+need_window() {
+    need libxkbcommon0 have_library libxkbcommon.so.0
+    need libxkbcommon-x11-0 have_library libxkbcommon-x11.so.0
+    need libx11-6 have_library libX11.so.6
+    need libx11-xcb1 have_library libX11-xcb.so.1
+    need libxcursor1 have_library libXcursor.so.1
+    need libxi6 have_library libXi.so.6
+}
+
 need_to_test() {
     need_to_run
     need vulkan-validationlayers have_validation_layer
     need xvfb command -v Xvfb
+    need xdotool command -v xdotool
+    need_window
     need glslc command -v glslc
 }
 

@@ -12,3 +12,5 @@ pub mod renderer;
 pub mod report;
 pub mod scene;
 pub mod shader_export;
+#[cfg(feature = "window")]
+pub mod window;

@@ -5,6 +5,7 @@ mod spectral;
 mod targets;
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use crate::foreground::Foreground;
 use crate::frame::Frame;
@@ -116,6 +117,18 @@ impl Renderer {
     /// stopped frame ends in [`crate::gpu::GpuError::Stopped`]; the next one computes what it has left undone.
     pub fn set_pace(&mut self, pace: Option<Pace>) {
         self.resources.pace = pace;
+    }
+
+    /// Takes shaders from a folder, as somebody edits them, in place of those that the program was built with; the next
+    /// frame computes everything anew.
+    ///
+    /// # Errors
+    /// [`RenderError::Shader`] with the file and line of what does not compile; then the shaders stay as they are.
+    pub fn take_shaders_from(&mut self, folder: &Path) -> Result<(), RenderError> {
+        self.resources.set_shaders(ShaderSources::from_directory(folder)?)?;
+        self.history = History::default();
+        self.histories.clear();
+        Ok(())
     }
 
     /// Renders what the scene's camera sees.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The modules of `src/`, lowest first, and the other modules that each may use.
-const MAY_USE: [(&str, &[&str]); 12] = [
+const MAY_USE: [(&str, &[&str]); 13] = [
     ("scene", &[]),
     ("foreground", &["scene"]),
     ("frame", &[]),
@@ -20,11 +20,18 @@ const MAY_USE: [(&str, &[&str]); 12] = [
     ("passes", &["foreground", "gpu", "output", "plan", "probe", "scene"]),
     ("shader_export", &["passes", "plan"]),
     ("renderer", &["foreground", "frame", "gpu", "passes", "plan", "probe", "scene"]),
+    ("window", &["frame", "gpu", "output", "passes", "plan", "reference", "renderer", "scene"]),
 ];
 
 /// Words of code that only these modules may say: crates, and what the compiler cannot check.
-const ONLY_IN: [(&str, &[&str]); 5] = [
+const ONLY_IN: [(&str, &[&str]); 11] = [
     ("ash", &["gpu"]),
+    ("ash_window", &["gpu"]),
+    ("raw_window_handle", &["gpu"]),
+    ("egui", &["window"]),
+    ("egui_ash_renderer", &["window"]),
+    ("egui_winit", &["window"]),
+    ("winit", &["window"]),
     ("gpu_allocator", &["gpu"]),
     ("unsafe", &["gpu"]),
     ("welkin_shaders", &["gpu", "passes", "shader_export"]),
@@ -174,8 +181,9 @@ fn the_scan_notices_what_is_forbidden() {
 }
 
 /// Names of the packages that one of the workspace's packages is built with.
-fn packages_of(package: &str) -> BTreeSet<String> {
+fn packages_of(package: &str, more: &[&str]) -> BTreeSet<String> {
     let arguments = ["tree", "--package", package, "--edges", "normal", "--prefix", "none", "--offline", "--locked"];
+    let arguments = [&arguments, more].concat();
     let output = Command::new(env!("CARGO")).current_dir(root()).args(arguments).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
@@ -186,13 +194,22 @@ fn packages_of(package: &str) -> BTreeSet<String> {
 fn the_crates_for_engines_bring_neither_vulkan_nor_a_command_line() {
     let unwanted = ["ash", "gpu-allocator", "clap", "winit", "egui", "welkin"];
     let among = |packages: &BTreeSet<String>| unwanted.into_iter().filter(|name| packages.contains(*name)).count();
-    let lut = packages_of("welkin-lut");
+    let lut = packages_of("welkin-lut", &[]);
     assert!(lut.contains("welkin-lut") && among(&lut) == 0, "{lut:?}");
     assert!(!lut.contains("welkin-shaders") && !lut.contains("naga"), "{lut:?}");
-    let shaders = packages_of("welkin-shaders");
+    let shaders = packages_of("welkin-shaders", &[]);
     assert!(shaders.contains("naga") && among(&shaders) == 0, "{shaders:?}");
     assert!(!shaders.contains("welkin-lut"), "{shaders:?}");
     // The program itself has what those must not have.
-    let program = packages_of("welkin");
+    let program = packages_of("welkin", &[]);
     assert!(["ash", "clap", "welkin-lut"].iter().all(|name| program.contains(*name)), "{program:?}");
+}
+
+#[test]
+fn a_build_without_the_window_brings_no_library_of_windows() {
+    let of_windows = ["winit", "egui", "egui-winit", "egui-ash-renderer", "ash-window", "arboard"];
+    let among = |packages: &BTreeSet<String>| of_windows.into_iter().filter(|name| packages.contains(*name)).count();
+    let without = packages_of("welkin", &["--no-default-features"]);
+    assert!(without.contains("ash") && among(&without) == 0, "{without:?}");
+    assert_eq!(among(&packages_of("welkin", &[])), of_windows.len(), "the control: the window needs them");
 }

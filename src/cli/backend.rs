@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use clap::ValueEnum;
-use welkin::gpu::{DeviceKind, DeviceRequest, Validation, ValidationLog};
+use welkin::gpu::{DeviceKind, DeviceRequest, Gpu, Validation, ValidationLog};
 use welkin::passes::RenderError;
 use welkin::renderer::Renderer;
 
@@ -63,17 +63,26 @@ pub fn check_validation() -> Result<(), Failure> {
 
 /// Opens a device by a part of its name or its index, else the best one, and says which.
 pub fn open_renderer(device: Option<&str>) -> Result<Renderer, Failure> {
+    let renderer = Renderer::new(&device_request(device)).map_err(failure)?;
+    announce(renderer.gpu());
+    Ok(renderer)
+}
+
+/// What is asked of a device by a part of its name or its index, or of the best one.
+pub fn device_request(device: Option<&str>) -> DeviceRequest {
     let validation = if env::var_os(VALIDATION_VARIABLE).is_some() { Validation::On } else { Validation::Off };
-    let request = DeviceRequest { device: device.map(str::to_owned), validation, pipeline_cache: pipeline_cache() };
-    let renderer = Renderer::new(&request).map_err(failure)?;
+    DeviceRequest { device: device.map(str::to_owned), validation, pipeline_cache: pipeline_cache() }
+}
+
+/// Says which device was opened, and keeps its messages.
+pub fn announce(gpu: &Gpu) {
     // Kept for `check_validation`; a command opens one device.
-    let _ = VALIDATION_LOG.set(renderer.gpu().validation_log());
-    let info = renderer.gpu().info();
+    let _ = VALIDATION_LOG.set(gpu.validation_log());
+    let info = gpu.info();
     match info.kind {
         DeviceKind::Cpu => eprintln!("device: {}, which computes on the CPU: no GPU was found or chosen", info.name),
         _ => eprintln!("device: {}", info.name),
     }
-    Ok(renderer)
 }
 
 /// Where compiled pipelines are kept: the platform's place for what can be made again, unless the variable names another

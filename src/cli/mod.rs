@@ -20,6 +20,8 @@ mod solver;
 mod spectrum;
 mod stdout;
 mod watch;
+#[cfg(feature = "window")]
+mod window;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -50,6 +52,8 @@ enum Command {
     Schema(schema::Arguments),
     Shaders(shaders::Arguments),
     Slab(slab::Arguments),
+    #[cfg(feature = "window")]
+    Window(window::Arguments),
 }
 
 /// Runs the program on the process's arguments.
@@ -65,6 +69,8 @@ pub fn run() -> ExitCode {
         Command::Schema(arguments) => schema::run(&arguments),
         Command::Shaders(arguments) => shaders::run(&arguments),
         Command::Slab(arguments) => slab::run(&arguments),
+        #[cfg(feature = "window")]
+        Command::Window(arguments) => window::run(&arguments),
     };
     match outcome.and_then(|()| backend::check_validation()) {
         Ok(()) => ExitCode::SUCCESS,

@@ -44,15 +44,28 @@ impl CommandList {
 
     /// Ends the list, submits it and waits until the device has done it.
     pub(crate) fn submit_and_wait(&mut self) -> Result<(), GpuError> {
-        let device = &self.context.device;
-        // SAFETY: the list is being recorded, and its fence is not signalled.
-        unsafe { device.end_command_buffer(self.raw) }.during("vkEndCommandBuffer")?;
-        self.context.submit(self.raw, self.fence)?;
-        // SAFETY: the fence was submitted.
-        unsafe { device.wait_for_fences(&[self.fence], true, u64::MAX) }.during("vkWaitForFences")
+        self.submit(&[], &[])?;
+        self.wait()
     }
 
-    /// Starts an empty list again, after [`CommandList::submit_and_wait`].
+    /// Ends the list and submits it; it waits for semaphores and signals others.
+    pub(crate) fn submit(
+        &mut self,
+        waits: &[vk::SemaphoreSubmitInfo],
+        signals: &[vk::SemaphoreSubmitInfo],
+    ) -> Result<(), GpuError> {
+        // SAFETY: the list is being recorded, and its fence is not signalled.
+        unsafe { self.context.device.end_command_buffer(self.raw) }.during("vkEndCommandBuffer")?;
+        self.context.submit(self.raw, self.fence, waits, signals)
+    }
+
+    /// Waits until the device has done what was submitted.
+    pub(crate) fn wait(&self) -> Result<(), GpuError> {
+        // SAFETY: the fence was submitted.
+        unsafe { self.context.device.wait_for_fences(&[self.fence], true, u64::MAX) }.during("vkWaitForFences")
+    }
+
+    /// Starts an empty list again, after [`CommandList::wait`].
     pub(crate) fn restart(&mut self) -> Result<(), GpuError> {
         let device = &self.context.device;
         // SAFETY: the device has finished with both.

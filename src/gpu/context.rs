@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use ash::{ext, vk};
+use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
 use gpu_allocator::{AllocationSizes, MemoryLocation};
 
@@ -37,7 +37,7 @@ impl Context {
         candidate: Candidate,
         pipeline_cache: Option<&Path>,
     ) -> Result<Self, GpuError> {
-        let device = create_device(&instance.raw, &candidate)?;
+        let device = create_device(&instance, &candidate)?;
         let debug = instance.debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &device));
         // SAFETY: the device was created with one queue of this family.
         let queue = unsafe { device.get_device_queue(candidate.queue_family, 0) };
@@ -91,13 +91,27 @@ impl Context {
         }
     }
 
-    /// Submits a command buffer; `fence` is signalled when it is done.
-    pub(crate) fn submit(&self, commands: vk::CommandBuffer, fence: vk::Fence) -> Result<(), GpuError> {
+    /// Submits a command buffer that waits for semaphores and signals others; `fence` is signalled when it is done.
+    pub(crate) fn submit(
+        &self,
+        commands: vk::CommandBuffer,
+        fence: vk::Fence,
+        waits: &[vk::SemaphoreSubmitInfo],
+        signals: &[vk::SemaphoreSubmitInfo],
+    ) -> Result<(), GpuError> {
         let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(commands)];
-        let submission = vk::SubmitInfo2::default().command_buffer_infos(&buffers);
-        let queue = lock(&self.queue);
-        // SAFETY: the lock keeps other threads from the queue; the command buffer has ended.
-        unsafe { self.device.queue_submit2(*queue, &[submission], fence) }.during("vkQueueSubmit2")
+        let submission = vk::SubmitInfo2::default()
+            .command_buffer_infos(&buffers)
+            .wait_semaphore_infos(waits)
+            .signal_semaphore_infos(signals);
+        // SAFETY: nobody else uses the queue meanwhile; the command buffer has ended.
+        self.with_queue(|queue| unsafe { self.device.queue_submit2(queue, &[submission], fence) })
+            .during("vkQueueSubmit2")
+    }
+
+    /// Keeps other threads from the queue while it is used.
+    pub(crate) fn with_queue<T>(&self, with: impl FnOnce(vk::Queue) -> T) -> T {
+        with(*lock(&self.queue))
     }
 
     /// Gives a Vulkan object a name in validation messages and debuggers.
@@ -167,19 +181,25 @@ pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn create_device(instance: &ash::Instance, candidate: &Candidate) -> Result<ash::Device, GpuError> {
+fn create_device(instance: &Instance, candidate: &Candidate) -> Result<ash::Device, GpuError> {
     let queue =
         [vk::DeviceQueueCreateInfo::default().queue_family_index(candidate.queue_family).queue_priorities(&[1.0])];
     // Robust access defines what WGSL promises for indices out of bounds; Vulkan 1.3 requires both features.
     let features = vk::PhysicalDeviceFeatures::default()
         .robust_buffer_access(true)
         .shader_storage_image_extended_formats(candidate.extended_storage_formats);
-    let mut features_1_3 =
-        vk::PhysicalDeviceVulkan13Features::default().synchronization2(true).robust_image_access(true);
+    let in_window = instance.has_window();
+    let mut features_1_3 = vk::PhysicalDeviceVulkan13Features::default()
+        .synchronization2(true)
+        .robust_image_access(true)
+        .dynamic_rendering(in_window);
+    let swapchain = [khr::swapchain::NAME.as_ptr()];
+    let extensions = if in_window { &swapchain[..] } else { &[] };
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queue)
         .enabled_features(&features)
+        .enabled_extension_names(extensions)
         .push_next(&mut features_1_3);
     // SAFETY: the device is of this instance and has the queue family and the features.
-    unsafe { instance.create_device(candidate.raw, &info, None) }.during("vkCreateDevice")
+    unsafe { instance.raw.create_device(candidate.raw, &info, None) }.during("vkCreateDevice")
 }

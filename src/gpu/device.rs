@@ -91,7 +91,7 @@ pub(crate) struct Candidate {
 pub(crate) fn choose(instance: &Instance, requested: Option<&str>) -> Result<Candidate, GpuError> {
     // SAFETY: the instance is alive.
     let devices = unsafe { instance.raw.enumerate_physical_devices() }.during("vkEnumeratePhysicalDevices")?;
-    let candidates: Vec<_> = devices.into_iter().map(|device| candidate(&instance.raw, device)).collect();
+    let candidates: Vec<_> = devices.into_iter().map(|device| candidate(instance, device)).collect();
     select(candidates, requested)
 }
 
@@ -126,21 +126,27 @@ fn select(candidates: Vec<Candidate>, requested: Option<&str>) -> Result<Candida
     }
 }
 
-fn candidate(instance: &ash::Instance, device: vk::PhysicalDevice) -> Candidate {
+fn candidate(owner: &Instance, device: vk::PhysicalDevice) -> Candidate {
+    let instance = &owner.raw;
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
     // SAFETY: the device is of this instance, as in the calls below.
     unsafe { instance.get_physical_device_properties2(device, &mut properties) };
     let properties = properties.properties;
     let families = unsafe { instance.get_physical_device_queue_family_properties(device) };
-    let queue = families.iter().position(|family| family.queue_flags.contains(vk::QueueFlags::COMPUTE));
+    let in_window = owner.has_window();
+    let flags = if in_window { vk::QueueFlags::COMPUTE | vk::QueueFlags::GRAPHICS } else { vk::QueueFlags::COMPUTE };
+    let serves = |(index, family): (usize, &vk::QueueFamilyProperties)| {
+        family.queue_flags.contains(flags) && owner.can_show(device, index as u32)
+    };
+    let queue = families.iter().enumerate().position(serves);
     let timestamp_bits = queue.map_or(0, |queue| families[queue].timestamp_valid_bits);
     let version = properties.api_version;
     let (major, minor) = (vk::api_version_major(version), vk::api_version_minor(version));
     let unusable = if version < vk::API_VERSION_1_3 {
         Some(format!("it serves Vulkan {major}.{minor}; 1.3 is needed"))
     } else if queue.is_none() {
-        Some("it has no compute queue".to_owned())
+        Some(if in_window { "it cannot draw in this window" } else { "it has no compute queue" }.to_owned())
     } else {
         None
     };

@@ -11,6 +11,9 @@ pub enum GpuError {
          mesa-vulkan-drivers"
     )]
     NoLoader(String),
+    /// Pictures cannot be shown.
+    #[error("Vulkan cannot draw in this window: {0}")]
+    NoSurface(String),
     /// A loader without any driver.
     #[error(
         "no Vulkan device; install a driver, on Debian and Ubuntu: apt-get install libvulkan1 mesa-vulkan-drivers \
@@ -185,7 +188,7 @@ impl GpuError {
     /// from other failures.
     pub fn is_no_usable_device(&self) -> bool {
         use GpuError as E;
-        matches!(self, E::NoLoader(_) | E::NoDevice | E::NoUsableDevice(_) | E::UnusableDevice { .. })
+        matches!(self, E::NoLoader(_) | E::NoDevice | E::NoSurface(_) | E::NoUsableDevice(_) | E::UnusableDevice { .. })
     }
 }
 

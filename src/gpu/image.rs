@@ -112,6 +112,11 @@ impl GpuImage {
         self.0.format
     }
 
+    /// Whether anyone else holds it.
+    pub fn is_shared(&self) -> bool {
+        Arc::strong_count(&self.0) > 1
+    }
+
     /// Bytes of its texels, without what the device adds.
     pub fn bytes(&self) -> u64 {
         self.0.shape.texels() * self.0.format.texel_bytes()

@@ -2,9 +2,14 @@
 
 use std::ffi::{CStr, c_char};
 
+#[cfg(feature = "window")]
+use std::sync::Arc;
+
 use ash::{ext, vk};
 
 use super::error::{During, GpuError};
+#[cfg(feature = "window")]
+use super::surface::{Surface, Window};
 use super::validation::{LAYER, Validation, ValidationLog};
 
 /// A Vulkan instance with its messenger; destroys both.
@@ -15,13 +20,44 @@ pub(crate) struct Instance {
     pub(crate) debug_utils: bool,
     /// Kept for the messenger, which points into it.
     pub(crate) log: ValidationLog,
+    /// Where pictures are shown, if anywhere.
+    #[cfg(feature = "window")]
+    pub(crate) surface: Option<Surface>,
     /// Keeps the loader's library open.
-    _entry: ash::Entry,
+    pub(crate) entry: ash::Entry,
 }
 
 impl Instance {
     /// Loads Vulkan and makes an instance.
     pub(crate) fn new(validation: Validation) -> Result<Self, GpuError> {
+        Self::with_extensions(validation, &[])
+    }
+
+    /// The same for pictures in a window.
+    #[cfg(feature = "window")]
+    pub(crate) fn with_window(validation: Validation, window: Arc<dyn Window>) -> Result<Self, GpuError> {
+        let mut instance = Self::with_extensions(validation, Surface::extensions(window.as_ref())?)?;
+        instance.surface = Some(Surface::new(&instance.entry, &instance.raw, window)?);
+        Ok(instance)
+    }
+
+    /// Whether pictures are shown.
+    pub(crate) fn has_window(&self) -> bool {
+        #[cfg(feature = "window")]
+        return self.surface.is_some();
+        #[cfg(not(feature = "window"))]
+        return false;
+    }
+
+    /// Whether a queue family of a device can show pictures, where any are to be shown.
+    pub(crate) fn can_show(&self, _device: vk::PhysicalDevice, _family: u32) -> bool {
+        #[cfg(feature = "window")]
+        return self.surface.as_ref().is_none_or(|surface| surface.is_served_by(_device, _family));
+        #[cfg(not(feature = "window"))]
+        return true;
+    }
+
+    fn with_extensions(validation: Validation, needed: &'static [*const c_char]) -> Result<Self, GpuError> {
         // SAFETY: the loader of the system is a Vulkan loader.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| GpuError::NoLoader(error.to_string()))?;
         let layer_version = match validation {
@@ -34,10 +70,19 @@ impl Instance {
         let settings = layer_version.is_some_and(|version| version >= SHADER_ACCESSES_VERSION)
             && has_extension(&entry, Some(LAYER), ext::layer_settings::NAME)?;
         let log = ValidationLog::default();
-        let raw = create(&entry, Extras { validate, debug_utils, features, settings }, &log)?;
-        let mut instance = Self { raw, messenger: None, debug_utils, log, _entry: entry };
+        let extras = Extras { validate, debug_utils, features, settings, needed };
+        let raw = create(&entry, extras, &log)?;
+        let mut instance = Self {
+            raw,
+            messenger: None,
+            debug_utils,
+            log,
+            #[cfg(feature = "window")]
+            surface: None,
+            entry,
+        };
         if validate && debug_utils {
-            let functions = ext::debug_utils::Instance::new(&instance._entry, &instance.raw);
+            let functions = ext::debug_utils::Instance::new(&instance.entry, &instance.raw);
             // SAFETY: the log lives as long as the instance.
             let messenger = unsafe { functions.create_debug_utils_messenger(&instance.log.messenger(), None) }
                 .during("vkCreateDebugUtilsMessengerEXT")?;
@@ -49,6 +94,10 @@ impl Instance {
 
 impl Drop for Instance {
     fn drop(&mut self) {
+        #[cfg(feature = "window")]
+        if let Some(surface) = &self.surface {
+            surface.destroy();
+        }
         // SAFETY: devices are gone; nothing uses the messenger or the instance any more.
         unsafe {
             if let Some((functions, messenger)) = self.messenger.take() {
@@ -70,13 +119,15 @@ struct Extras {
     features: bool,
     /// The layer's settings.
     settings: bool,
+    /// Extensions that must be there.
+    needed: &'static [*const c_char],
 }
 
 fn create(entry: &ash::Entry, extras: Extras, log: &ValidationLog) -> Result<ash::Instance, GpuError> {
-    let Extras { validate, debug_utils, features, settings } = extras;
+    let Extras { validate, debug_utils, features, settings, needed } = extras;
     let application = vk::ApplicationInfo::default().application_name(c"welkin").api_version(vk::API_VERSION_1_3);
     let layers: &[*const c_char] = if validate { &[LAYER.as_ptr()] } else { &[] };
-    let mut extensions = Vec::new();
+    let mut extensions = needed.to_vec();
     extensions.extend(debug_utils.then_some(ext::debug_utils::NAME.as_ptr()));
     extensions.extend(features.then_some(ext::validation_features::NAME.as_ptr()));
     extensions.extend(settings.then_some(ext::layer_settings::NAME.as_ptr()));
@@ -110,6 +161,9 @@ fn create(entry: &ash::Entry, extras: Extras, log: &ValidationLog) -> Result<ash
     // SAFETY: layers and extensions are there; the chain lives as long as the call, and the log as the instance.
     unsafe { entry.create_instance(&info, None) }.map_err(|result| match result {
         vk::Result::ERROR_INCOMPATIBLE_DRIVER => GpuError::NoDevice,
+        vk::Result::ERROR_EXTENSION_NOT_PRESENT => {
+            GpuError::NoSurface("no driver of this machine draws in windows of this kind".to_owned())
+        }
         result => GpuError::Vulkan { call: "vkCreateInstance", result },
     })
 }

@@ -2,6 +2,7 @@
 //!
 //! A [`Gpu`] makes images, buffers, samplers and pipelines. [`Gpu::record`] starts a list of dispatches, which bind
 //! resources by the names of the WGSL's variables; the barriers between them follow from what the passes declare.
+//! With the feature `window`, a `Presenter` shows images in a window.
 //! Knows nothing of what is computed.
 
 mod barrier;
@@ -17,9 +18,15 @@ mod instance;
 mod pace;
 mod pipeline;
 mod pipeline_cache;
+#[cfg(feature = "window")]
+mod presenter;
 mod recorder;
 mod resource;
 mod sampler;
+#[cfg(feature = "window")]
+mod surface;
+#[cfg(feature = "window")]
+mod swapchain;
 mod timer;
 mod transfer;
 mod validation;
@@ -36,9 +43,13 @@ pub use format::{Filtering, ImageFormat};
 pub use image::{GpuImage, ImageShape, NextUse};
 pub use pace::Pace;
 pub use pipeline::{MAX_UNIFORM_BUFFERS, Pipeline};
+#[cfg(feature = "window")]
+pub use presenter::{FRAMES_IN_FLIGHT, OverlayTarget, Placed, Presenter, RawDevice};
 pub use recorder::{Commands, Completed, Work};
 pub use resource::Resource;
 pub use sampler::{AddressMode, Filter, Sampler};
+#[cfg(feature = "window")]
+pub use surface::Window;
 pub use timer::{Clock, DispatchTime};
 pub use validation::{Validation, ValidationLog, ValidationMessage};
 
@@ -192,7 +203,9 @@ impl Gpu {
     /// # Errors
     /// As [`Gpu::record`].
     pub fn record_paced(&self, label: &str, pace: &Pace) -> Result<Commands, GpuError> {
-        Commands::new(&self.0, label, Some(Clock::of(self.info())), Some(pace.clone()))
+        // A driver that computes on the CPU stamps a dispatch when it is taken up, not when it is done.
+        let clock = if self.info().kind == DeviceKind::Cpu { Clock::Host } else { Clock::of(self.info()) };
+        Commands::new(&self.0, label, Some(clock), Some(pace.clone()))
     }
 
     /// Fills an image with texels in rows from the first, then slices or layers.

@@ -50,6 +50,8 @@ pub struct Commands {
     pace: Option<Pace>,
     /// What a paced recording has not submitted yet.
     piece: Piece,
+    /// Times of pieces by the host's clock.
+    piece_times: Vec<DispatchTime>,
     label: String,
 }
 
@@ -78,7 +80,12 @@ impl Commands {
             images: HashMap::new(),
             buffers: HashMap::new(),
             kept: Kept::default(),
-            timer: clock.map_or(Timer::Off, |clock| Timer::new(context, clock)),
+            timer: match (clock, &pace) {
+                // Pieces are timed as wholes.
+                (None, _) | (Some(Clock::Host), Some(_)) => Timer::Off,
+                (Some(clock), _) => Timer::new(context, clock),
+            },
+            piece_times: Vec::new(),
             clock,
             pace,
             piece: Piece::default(),
@@ -153,7 +160,7 @@ impl Commands {
         let row_workgroups = workgroups.iter().map(|&n| u64::from(n)).product::<u64>() / u64::from(workgroups[axis]);
         let mut from = 0;
         while from < workgroups[axis] {
-            let portion = pace.portion(label, &self.piece, workgroups[axis] - from, row_workgroups);
+            let portion = pace.portion(label, &self.piece, [workgroups[axis] - from, workgroups[axis]], row_workgroups);
             let (mut base, mut count) = ([0; 3], workgroups);
             (base[axis], count[axis]) = (from, portion.rows);
             self.record_portion(label, pipeline, descriptors, base, count)?;
@@ -174,7 +181,11 @@ impl Commands {
         }
         let started = Instant::now();
         self.flush()?;
-        pace.learn(&std::mem::take(&mut self.piece), started.elapsed());
+        let (piece, took) = (std::mem::take(&mut self.piece), started.elapsed());
+        if self.clock == Some(Clock::Host) {
+            self.piece_times.extend(piece.times(took));
+        }
+        pace.learn(&piece, took);
         Ok(())
     }
 
@@ -205,7 +216,9 @@ impl Commands {
             None => self.flush()?,
             Some(pace) => self.finish_piece(&pace)?,
         }
-        Ok(Completed { times: self.timer.times()?, clock: self.clock })
+        let mut times = self.timer.times()?;
+        times.append(&mut self.piece_times);
+        Ok(Completed { times, clock: self.clock })
     }
 
     fn workgroups(&self, pipeline: &Pipeline, work: Work) -> Result<[u32; 3], GpuError> {

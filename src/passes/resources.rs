@@ -162,6 +162,22 @@ impl Resources {
         self.group = group;
     }
 
+    /// Takes other shaders. Every pipeline that is in use is compiled first: where one fails, all stay.
+    pub fn set_shaders(&mut self, shaders: ShaderSources) -> Result<(), RenderError> {
+        let mut pipelines: HashMap<_, Pipeline> = HashMap::new();
+        for (pass, definitions) in self.pipelines.keys() {
+            let relevant = (*pass, shaders.relevant(pass, definitions)?);
+            let pipeline = match pipelines.get(&relevant) {
+                Some(pipeline) => pipeline.clone(),
+                None => self.gpu.pipeline(&Shader::from_sources(&shaders, pass, &relevant.1)?)?,
+            };
+            pipelines.insert(relevant, pipeline.clone());
+            pipelines.insert((*pass, definitions.clone()), pipeline);
+        }
+        (self.shaders, self.pipelines) = (shaders, pipelines);
+        Ok(())
+    }
+
     /// The pipeline of a pass, specialised; compiled when it is asked for the first time.
     pub fn pipeline(&mut self, pass: &'static str, definitions: Definitions) -> Result<Pipeline, RenderError> {
         let key = (pass, definitions);

@@ -1,0 +1,180 @@
+//! The images that a window shows in turn.
+
+use std::sync::Arc;
+
+use ash::vk::{ColorSpaceKHR as Space, Format};
+use ash::{khr, vk};
+
+use super::context::Context;
+use super::error::{During, GpuError};
+use super::surface::Surface;
+
+/// A swapchain with a view of each image. Destroyed only while the device uses none of them.
+pub(crate) struct Swapchain {
+    context: Arc<Context>,
+    functions: khr::swapchain::Device,
+    pub(crate) raw: vk::SwapchainKHR,
+    pub(crate) images: Vec<vk::Image>,
+    pub(crate) views: Vec<vk::ImageView>,
+    /// One an image: signalled when it may be shown.
+    pub(crate) drawn: Vec<vk::Semaphore>,
+    pub(crate) extent: vk::Extent2D,
+    pub(crate) format: vk::SurfaceFormatKHR,
+}
+
+impl Swapchain {
+    /// For a surface and the size that the window has, in pixels; `None` where the window has no area at the moment.
+    pub(crate) fn new(
+        context: &Arc<Context>,
+        surface: &Surface,
+        size: [u32; 2],
+        old: Option<&Self>,
+    ) -> Result<Option<Self>, GpuError> {
+        let device = context.physical_device;
+        let capabilities = surface.capabilities(device).during("vkGetPhysicalDeviceSurfaceCapabilitiesKHR")?;
+        let extent = extent(&capabilities, size);
+        if extent.width == 0 || extent.height == 0 {
+            return Ok(None);
+        }
+        let formats = surface.formats(device).during("vkGetPhysicalDeviceSurfaceFormatsKHR")?;
+        let Some(format) = choose_format(&formats) else {
+            return Err(GpuError::NoSurface("its formats are none that pictures can be drawn in".to_owned()));
+        };
+        let functions = khr::swapchain::Device::new(&context.instance.raw, &context.device);
+        let most = if capabilities.max_image_count == 0 { u32::MAX } else { capabilities.max_image_count };
+        let info = vk::SwapchainCreateInfoKHR::default()
+            .surface(surface.raw())
+            .min_image_count((capabilities.min_image_count + 1).min(most))
+            .image_format(format.format)
+            .image_color_space(format.color_space)
+            .image_extent(extent)
+            .image_array_layers(1)
+            .image_usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_DST)
+            .image_sharing_mode(vk::SharingMode::EXCLUSIVE)
+            .pre_transform(capabilities.current_transform)
+            .composite_alpha(opaque(capabilities.supported_composite_alpha))
+            // The mode that every device has; it shows whole pictures only.
+            .present_mode(vk::PresentModeKHR::FIFO)
+            .clipped(true)
+            .old_swapchain(old.map_or(vk::SwapchainKHR::null(), |old| old.raw));
+        // SAFETY: the surface is alive, and the device can show pictures on it.
+        let raw = unsafe { functions.create_swapchain(&info, None) }.during("vkCreateSwapchainKHR")?;
+        // From here on, an early return destroys what there is.
+        let (images, views, drawn) = (Vec::new(), Vec::new(), Vec::new());
+        let mut swapchain = Self { context: context.clone(), functions, raw, images, views, drawn, extent, format };
+        swapchain.take_images()?;
+        Ok(Some(swapchain))
+    }
+
+    fn take_images(&mut self) -> Result<(), GpuError> {
+        let device = &self.context.device;
+        // SAFETY: the swapchain is alive, as are its images in the calls below.
+        self.images = unsafe { self.functions.get_swapchain_images(self.raw) }.during("vkGetSwapchainImagesKHR")?;
+        for &image in &self.images {
+            self.context.name(image, "window");
+            let whole = vk::ImageSubresourceRange::default()
+                .aspect_mask(vk::ImageAspectFlags::COLOR)
+                .level_count(1)
+                .layer_count(1);
+            let view = vk::ImageViewCreateInfo::default()
+                .image(image)
+                .view_type(vk::ImageViewType::TYPE_2D)
+                .format(self.format.format)
+                .subresource_range(whole);
+            unsafe {
+                self.views.push(device.create_image_view(&view, None).during("vkCreateImageView")?);
+                self.drawn.push(device.create_semaphore(&Default::default(), None).during("vkCreateSemaphore")?);
+            }
+        }
+        Ok(())
+    }
+
+    /// The next image to draw in, and whether the swapchain still fits the window well. Waits for `timeout_ns` at most.
+    pub(crate) fn acquire(&self, timeout_ns: u64, acquired: vk::Semaphore) -> Result<(usize, bool), vk::Result> {
+        // SAFETY: nothing waits for the semaphore.
+        let next = unsafe { self.functions.acquire_next_image(self.raw, timeout_ns, acquired, vk::Fence::null()) };
+        next.map(|(index, suboptimal)| (index as usize, !suboptimal))
+    }
+
+    /// Shows an image once it is drawn; says whether the swapchain still fits the window well.
+    pub(crate) fn present(&self, queue: vk::Queue, index: usize) -> Result<bool, vk::Result> {
+        let (drawn, swapchains, indices) = ([self.drawn[index]], [self.raw], [index as u32]);
+        let info =
+            vk::PresentInfoKHR::default().wait_semaphores(&drawn).swapchains(&swapchains).image_indices(&indices);
+        // SAFETY: the image was acquired, and drawing it signals the semaphore.
+        unsafe { self.functions.queue_present(queue, &info) }.map(|suboptimal| !suboptimal)
+    }
+}
+
+impl Drop for Swapchain {
+    fn drop(&mut self) {
+        let device = &self.context.device;
+        // SAFETY: who owns it has waited until nothing uses it.
+        unsafe {
+            self.views.iter().for_each(|&view| device.destroy_image_view(view, None));
+            self.drawn.iter().for_each(|&semaphore| device.destroy_semaphore(semaphore, None));
+            self.functions.destroy_swapchain(self.raw, None);
+        }
+    }
+}
+
+/// A surface may leave the size to the application.
+fn extent(capabilities: &vk::SurfaceCapabilitiesKHR, [width, height]: [u32; 2]) -> vk::Extent2D {
+    if capabilities.current_extent.width != u32::MAX {
+        return capabilities.current_extent;
+    }
+    let (least, most) = (capabilities.min_image_extent, capabilities.max_image_extent);
+    vk::Extent2D {
+        width: width.clamp(least.width, most.width.max(least.width)),
+        height: height.clamp(least.height, most.height.max(least.height)),
+    }
+}
+
+/// What lies behind the window does not shine through.
+fn opaque(supported: vk::CompositeAlphaFlagsKHR) -> vk::CompositeAlphaFlagsKHR {
+    let opaque = vk::CompositeAlphaFlagsKHR::OPAQUE;
+    if supported.contains(opaque) { opaque } else { vk::CompositeAlphaFlagsKHR::INHERIT }
+}
+
+/// Bytes or more bits, which are sent as they are: an `SRGB` format would encode what is encoded already.
+fn choose_format(offered: &[vk::SurfaceFormatKHR]) -> Option<vk::SurfaceFormatKHR> {
+    let wanted = [
+        Format::B8G8R8A8_UNORM,
+        Format::R8G8B8A8_UNORM,
+        Format::A8B8G8R8_UNORM_PACK32,
+        Format::A2B10G10R10_UNORM_PACK32,
+        Format::A2R10G10B10_UNORM_PACK32,
+    ];
+    let fits = |format: Format| {
+        move |offer: &&vk::SurfaceFormatKHR| (offer.format, offer.color_space) == (format, Space::SRGB_NONLINEAR)
+    };
+    wanted.into_iter().find_map(|format| offered.iter().find(fits(format)).copied())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn offer(format: Format, color_space: Space) -> vk::SurfaceFormatKHR {
+        vk::SurfaceFormatKHR { format, color_space }
+    }
+
+    #[test]
+    fn a_format_is_taken_that_encodes_nothing() {
+        let bytes = offer(Format::B8G8R8A8_UNORM, Space::SRGB_NONLINEAR);
+        let encoded_twice = offer(Format::B8G8R8A8_SRGB, Space::SRGB_NONLINEAR);
+        let other_space = offer(Format::B8G8R8A8_UNORM, Space::HDR10_ST2084_EXT);
+        assert_eq!(choose_format(&[encoded_twice, other_space, bytes]), Some(bytes));
+        assert_eq!(choose_format(&[encoded_twice, other_space]), None);
+    }
+
+    #[test]
+    fn the_surface_says_the_size_or_bounds_it() {
+        let fixed = vk::Extent2D { width: 30, height: 20 };
+        let mut capabilities = vk::SurfaceCapabilitiesKHR { current_extent: fixed, ..Default::default() };
+        assert_eq!(extent(&capabilities, [500, 500]), fixed);
+        capabilities.current_extent = vk::Extent2D { width: u32::MAX, height: u32::MAX };
+        capabilities.max_image_extent = vk::Extent2D { width: 400, height: 600 };
+        assert_eq!(extent(&capabilities, [500, 500]), vk::Extent2D { width: 400, height: 500 });
+    }
+}

@@ -1,0 +1,88 @@
+//! A view beside its truth: starts the exposure, brings the real-time frame to it, and its pictures to the device.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use winit::event_loop::EventLoopProxy;
+
+use super::app::Event;
+use super::session::{Session, Tone};
+use super::sky::Sky;
+use super::truth::{Exposed, Truth};
+use crate::gpu::{Gpu, GpuError, GpuImage, ImageFormat, ImageShape, NextUse};
+use crate::plan::{Outputs, Settings};
+use crate::reference::SolverError;
+use crate::scene::Scene;
+
+static NUMBER: AtomicU64 = AtomicU64::new(0);
+
+/// The exposure of one view.
+pub struct Comparison {
+    scene: Arc<Scene>,
+    size: [u32; 2],
+    settings: Settings,
+    /// Tells its news from those of earlier ones.
+    pub number: u64,
+    /// Truth and difference, as far as they have come.
+    pub images: Option<[GpuImage; 2]>,
+    _truth: Truth,
+}
+
+impl Comparison {
+    /// Whether it is of this view.
+    pub fn is_of(&self, scene: &Arc<Scene>, size: [u32; 2], settings: Settings) -> bool {
+        (&self.scene, self.size, self.settings) == (scene, size, settings)
+    }
+
+    /// Starts the exposure of what a window of so many pixels shows.
+    ///
+    /// # Errors
+    /// [`SolverError`] for a scene that the path tracer cannot trace.
+    pub fn start(
+        session: &Session,
+        size: [u32; 2],
+        sky: &Sky,
+        proxy: &EventLoopProxy<Event>,
+    ) -> Result<Self, SolverError> {
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let traced = session.scene_of_size(size, session.kept.truth_scale);
+        let upload = sky.handle();
+        let to_window = proxy.clone();
+        let truth = Truth::start(traced.clone(), move |exposed| {
+            let to_window = to_window.clone();
+            upload.between(move |renderer| {
+                let event = match images(renderer.gpu(), &exposed) {
+                    Ok(images) => Event::Truth(number, images, exposed.state),
+                    Err(error) => Event::Said(Tone::Failed, error.to_string()),
+                };
+                let _ = to_window.send_event(event);
+            });
+        })?;
+        let (real_time, settings) = (truth.real_time(), session.settings());
+        sky.capture(traced, settings, Outputs::default(), move |rendered| {
+            if let (Ok(rendered), Ok(mut slot)) = (rendered, real_time.lock()) {
+                *slot = Some(rendered.frame);
+            }
+        });
+        Ok(Self { scene: session.document.scene().clone(), size, settings, number, images: None, _truth: truth })
+    }
+}
+
+/// Truth and difference on the device; before there is a difference, the truth stands for it.
+fn images(gpu: &Gpu, exposed: &Exposed) -> Result<[GpuImage; 2], GpuError> {
+    let [width, height] = exposed.size;
+    let upload = |name: &str, texels: &[[u8; 4]]| {
+        let image = gpu.image(name, ImageShape::D2(width, height), ImageFormat::Rgba8Unorm)?;
+        gpu.write_image(&image, texels)?;
+        let mut commands = gpu.record("upload")?;
+        commands.leave_for(&image, NextUse::Copy);
+        commands.submit_and_wait()?;
+        Ok(image)
+    };
+    let truth = upload("truth", &exposed.truth)?;
+    let difference = match &exposed.difference {
+        Some(texels) => upload("difference", texels)?,
+        None => truth.clone(),
+    };
+    Ok([truth, difference])
+}

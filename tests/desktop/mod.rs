@@ -1,0 +1,186 @@
+//! A desktop without a monitor, and the program's window on it, as a user has them: keys, clicks, and what is to be seen.
+
+// Tests and examples use different parts of it.
+#![allow(dead_code)]
+
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+/// Longest wait for anything: a machine may be busy, and shaders are compiled first.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// An X server that draws into a file.
+pub struct Desktop {
+    server: Child,
+    display: String,
+    folder: TempDir,
+}
+
+impl Desktop {
+    /// Starts a server on a free display.
+    pub fn start() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let mut command = Command::new("Xvfb");
+        command.args(["-displayfd", "1", "-screen", "0", "800x600x24", "-fbdir"]).arg(folder.path());
+        let server = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
+        let mut server = server.unwrap_or_else(|error| panic!("Xvfb: {error}; apt-get install xvfb xdotool"));
+        let mut number = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
+        Self { server, display: format!(":{}", number.trim()), folder }
+    }
+
+    /// What is to be seen at a place of the screen: red, green, blue.
+    pub fn pixel(&self, x: usize, y: usize) -> [u8; 3] {
+        let screen = std::fs::read(self.folder.path().join("Xvfb_screen0")).unwrap();
+        // The format of xwd: big-endian numbers, of which these are the header's length, bytes a row, number of colours.
+        let number = |index: usize| u32::from_be_bytes(screen[4 * index..4 * index + 4].try_into().unwrap()) as usize;
+        let at = number(0) + 12 * number(19) + y * number(12) + 4 * x;
+        [screen[at + 2], screen[at + 1], screen[at]]
+    }
+
+    /// Sends keys, clicks and sizes.
+    pub fn xdotool(&self, arguments: &str) -> String {
+        let mut command = Command::new("xdotool");
+        let output = command.env("DISPLAY", &self.display).args(arguments.split_whitespace()).output();
+        let output = output.unwrap_or_else(|error| panic!("xdotool: {error}; apt-get install xdotool"));
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Opens the program's window in a folder with arguments, under the validation layer.
+    pub fn open(&self, folder: &Path, arguments: &str) -> Program<'_> {
+        let mut command = Command::new(binary());
+        command.env("DISPLAY", &self.display).env_remove("WAYLAND_DISPLAY").env("WELKIN_VALIDATION", "1");
+        command.env("WELKIN_CONFIG", folder.join("config")).env("WELKIN_CACHE", folder.join("cache"));
+        command.env("WELKIN_LOG", "info").env("NO_COLOR", "1");
+        command.current_dir(folder).arg("window").args(arguments.split_whitespace());
+        let mut process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let stdout = Said::listen(process.stdout.take().unwrap());
+        let stderr = Said::listen(process.stderr.take().unwrap());
+        let mut program = Program { desktop: self, process, stdout, stderr, window: String::new() };
+        program.window = until("a window", || {
+            assert!(program.process.try_wait().unwrap().is_none(), "it ended: {}", program.stderr.text());
+            self.xdotool("search --name ^welkin:").lines().last().map(str::to_owned)
+        });
+        self.xdotool(&format!("windowfocus {}", program.window));
+        program
+    }
+}
+
+impl Drop for Desktop {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+/// The program: Cargo names it to tests; for an example it lies a folder above.
+fn binary() -> PathBuf {
+    match option_env!("CARGO_BIN_EXE_welkin") {
+        Some(path) => path.into(),
+        None => std::env::current_exe().unwrap().parent().unwrap().with_file_name("welkin"),
+    }
+}
+
+/// Waits for something to be there.
+pub fn until<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
+    let started = Instant::now();
+    loop {
+        if let Some(found) = look() {
+            return found;
+        }
+        assert!(started.elapsed() < PATIENCE, "waited in vain for {what}");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+/// What a program has said so far.
+#[derive(Clone, Default)]
+pub struct Said(Arc<Mutex<String>>);
+
+impl Said {
+    fn listen(stream: impl Read + Send + 'static) -> Self {
+        let said = Self::default();
+        let heard = said.clone();
+        std::thread::spawn(move || {
+            for line in BufReader::new(stream).lines().map_while(Result::ok) {
+                *heard.0.lock().unwrap() += &format!("{line}\n");
+            }
+        });
+        said
+    }
+
+    /// All of it.
+    pub fn text(&self) -> String {
+        self.0.lock().unwrap().clone()
+    }
+}
+
+/// The program with its window open.
+pub struct Program<'a> {
+    desktop: &'a Desktop,
+    process: Child,
+    /// Its standard output and error.
+    pub stdout: Said,
+    pub stderr: Said,
+    window: String,
+}
+
+impl Program<'_> {
+    /// Presses a key, as in `ctrl+s`.
+    pub fn key(&self, key: &str) {
+        self.desktop.xdotool(&format!("key {key}"));
+    }
+
+    /// Holds a key for some seconds.
+    pub fn hold(&self, key: &str, seconds: f64) {
+        self.desktop.xdotool(&format!("keydown {key} sleep {seconds} keyup {key}"));
+    }
+
+    /// Clicks at a place of the screen.
+    pub fn click(&self, x: usize, y: usize) {
+        self.desktop.xdotool(&format!("mousemove {x} {y} sleep 0.3 click 1"));
+    }
+
+    /// Does something to the window: `windowsize WINDOW 300 200` without its name.
+    pub fn window(&self, command: &str, arguments: &str) {
+        self.desktop.xdotool(&format!("{command} {} {arguments}", self.window));
+    }
+
+    /// The same with several commands, in which `WINDOW` stands for the window.
+    pub fn act_on_window(&self, commands: &str) {
+        self.desktop.xdotool(&commands.replace("WINDOW", &self.window));
+    }
+
+    pub fn title(&self) -> String {
+        self.desktop.xdotool(&format!("getwindowname {}", self.window)).trim().to_owned()
+    }
+
+    /// Waits until it has said something on standard error after what it had said before.
+    pub fn wait_for(&self, words: &str, from: usize) {
+        until(words, || self.stderr.text()[from..].contains(words).then_some(()));
+    }
+
+    /// Memory that it occupies, KiB.
+    pub fn memory_kib(&self) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.process.id())).unwrap_or_default();
+        let line = status.lines().find(|line| line.starts_with("VmRSS:")).unwrap_or_default();
+        line.split_whitespace().nth(1).and_then(|number| number.parse().ok()).unwrap_or(0)
+    }
+
+    /// Waits for its end; its exit code.
+    pub fn exit_code(mut self) -> i32 {
+        until("its end", || self.process.try_wait().unwrap()).code().expect("it ended by itself")
+    }
+}
+
+impl Drop for Program<'_> {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
