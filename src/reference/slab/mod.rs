@@ -6,6 +6,7 @@
 
 mod asymptotic;
 mod deep;
+pub mod families;
 mod forward;
 mod radiance;
 
