@@ -131,6 +131,12 @@ impl Renderer {
         Ok(())
     }
 
+    /// Forgets what earlier frames have computed, so that the next runs every pass that it needs: for measurements.
+    pub fn forget(&mut self) {
+        self.history = History::default();
+        self.histories.clear();
+    }
+
     /// Renders what the scene's camera sees.
     ///
     /// # Errors

@@ -16,7 +16,7 @@ const MAY_USE: [(&str, &[&str]); 13] = [
     ("output", &["frame", "scene"]),
     ("plan", &["probe", "scene"]),
     ("reference", &["frame", "output", "probe", "scene"]),
-    ("report", &["frame", "output", "scene"]),
+    ("report", &["frame", "output", "plan", "probe", "reference", "scene"]),
     ("passes", &["foreground", "gpu", "output", "plan", "probe", "scene"]),
     ("shader_export", &["passes", "plan"]),
     ("renderer", &["foreground", "frame", "gpu", "passes", "plan", "probe", "scene"]),

@@ -45,7 +45,7 @@ impl Backend {
 /// When this environment variable is set, the validation layer watches, and a single message of it fails the command.
 const VALIDATION_VARIABLE: &str = "WELKIN_VALIDATION";
 
-/// Names a folder for compiled pipelines.
+/// Names a folder for what can be made again.
 const CACHE_VARIABLE: &str = "WELKIN_CACHE";
 
 static VALIDATION_LOG: OnceLock<ValidationLog> = OnceLock::new();
@@ -71,7 +71,7 @@ pub fn open_renderer(device: Option<&str>) -> Result<Renderer, Failure> {
 /// What is asked of a device by a part of its name or its index, or of the best one.
 pub fn device_request(device: Option<&str>) -> DeviceRequest {
     let validation = if env::var_os(VALIDATION_VARIABLE).is_some() { Validation::On } else { Validation::Off };
-    DeviceRequest { device: device.map(str::to_owned), validation, pipeline_cache: pipeline_cache() }
+    DeviceRequest { device: device.map(str::to_owned), validation, pipeline_cache: cache_folder() }
 }
 
 /// Says which device was opened, and keeps its messages.
@@ -85,9 +85,9 @@ pub fn announce(gpu: &Gpu) {
     }
 }
 
-/// Where compiled pipelines are kept: the platform's place for what can be made again, unless the variable names another
-/// folder; an empty one keeps nothing.
-fn pipeline_cache() -> Option<PathBuf> {
+/// Where compiled pipelines and references are kept: the platform's place for what can be made again, unless
+/// the variable names another folder; an empty one keeps nothing.
+pub fn cache_folder() -> Option<PathBuf> {
     match env::var_os(CACHE_VARIABLE) {
         Some(folder) => (!folder.is_empty()).then(|| folder.into()),
         None => directories::ProjectDirs::from("", "", "welkin").map(|places| places.cache_dir().to_owned()),

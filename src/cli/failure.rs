@@ -19,6 +19,8 @@ pub enum Failure {
     NoDevice(anyhow::Error),
     /// The user interrupted; `--resume` goes on from the checkpoint, where there is one. Exit code [`INTERRUPTED`].
     Interrupted(Option<PathBuf>),
+    /// The user interrupted, and the same command goes on where it was. Exit code [`INTERRUPTED`].
+    Paused,
 }
 
 impl Failure {
@@ -28,7 +30,7 @@ impl Failure {
             Self::Check(_) => 1,
             Self::Input(_) => 2,
             Self::NoDevice(_) => 3,
-            Self::Interrupted(_) => INTERRUPTED,
+            Self::Interrupted(_) | Self::Paused => INTERRUPTED,
         })
     }
 }
@@ -50,6 +52,7 @@ impl fmt::Display for Failure {
             Self::Interrupted(None) => {
                 write!(f, "interrupted, nothing is written; `welkin reference` keeps what it has reached")
             }
+            Self::Paused => write!(f, "interrupted; the same command goes on where it was"),
             // The alternate form joins an error with its causes.
             Self::Input(error) | Self::NoDevice(error) => write!(f, "error: {error:#}"),
         }

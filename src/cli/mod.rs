@@ -13,6 +13,7 @@ mod phase_argument;
 mod probe;
 mod reference;
 mod render;
+mod report;
 mod schema;
 mod shaders;
 mod slab;
@@ -49,6 +50,7 @@ enum Command {
     Probe(probe::Arguments),
     Reference(reference::Arguments),
     Render(render::Arguments),
+    Report(report::Arguments),
     Schema(schema::Arguments),
     Shaders(shaders::Arguments),
     Slab(slab::Arguments),
@@ -64,6 +66,7 @@ pub fn run() -> ExitCode {
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
         Command::Reference(arguments) => reference::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
