@@ -95,7 +95,7 @@ fn begin(arguments: &Arguments, checkpoint: &Path, identity: &Identity, pixels: 
             } else if resume {
                 eprintln!("note: there is no checkpoint '{}'; beginning from the start", checkpoint.display());
             }
-            Ok(Film::new(arguments.shard, pixels))
+            Ok(Film::with_room(arguments.shard, pixels)?)
         }
     }
 }

@@ -18,7 +18,7 @@ const SEED: u64 = 0;
 pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<Rendered, Failure> {
     let sampling = Sampling::new(arguments.samples, None);
     let view = CameraView::new(scene, Solver::Path, SEED, sampling.walks_per_batch)?;
-    let mut film = Film::new(Shard::WHOLE, view.pixels());
+    let mut film = Film::with_room(Shard::WHOLE, view.pixels())?;
     let watch = Watch::new(&film, &sampling, Solver::Path.samples_name(), None)?;
     let started = Instant::now();
     if expose(&&view, &mut film, &sampling.stop(), &watch)? == Outcome::Interrupted {

@@ -94,10 +94,33 @@ pub struct Film {
     pub goal: u64,
 }
 
+/// A picture is larger than memory.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("no memory for {pixels} pixels ({bytes} bytes); make the picture smaller, or trace it in parts with --shard")]
+pub struct FilmError {
+    /// How many.
+    pub pixels: usize,
+    /// What they take.
+    pub bytes: usize,
+}
+
 impl Film {
     /// Unexposed film for the part of a picture with so many pixels.
     pub fn new(shard: Shard, picture_pixels: usize) -> Self {
         Self { shard, pixels: vec![PixelMean::default(); shard.pixels_of(picture_pixels)], goal: 0 }
+    }
+
+    /// The same where the picture may be larger than memory.
+    ///
+    /// # Errors
+    /// [`FilmError`] with what it takes.
+    pub fn with_room(shard: Shard, picture_pixels: usize) -> Result<Self, FilmError> {
+        let count = shard.pixels_of(picture_pixels);
+        let mut pixels = Vec::new();
+        let no_room = |_| FilmError { pixels: count, bytes: count.saturating_mul(size_of::<PixelMean>()) };
+        pixels.try_reserve_exact(count).map_err(no_room)?;
+        pixels.resize(count, PixelMean::default());
+        Ok(Self { shard, pixels, goal: 0 })
     }
 
     /// Whether every pixel has reached the goal.

@@ -1,0 +1,44 @@
+//! Whatever a scene file says, it is refused with a reason or becomes a picture of sound numbers.
+//!
+//! A scene that does not is shrunk, printed and kept in `tests/regressions/`, whose files are all tried again.
+
+mod common;
+#[path = "hard_cases/laws.rs"]
+#[allow(dead_code)]
+mod laws;
+mod scene_strategy;
+
+use std::fs;
+
+use proptest::test_runner::{RngAlgorithm, TestRng};
+use scene_strategy::trial::{Fate, fate, regressions, try_scenes};
+use welkin::gpu::DeviceRequest;
+use welkin::renderer::Renderer;
+
+/// Scene files that are read and planned.
+const SCENES: u32 = 1000;
+/// One in so many of those that can be planned is rendered: nearly all of the time is the compiling of their shaders.
+const ONE_IN: usize = 30;
+
+#[test]
+fn every_random_scene_file_is_refused_with_a_reason_or_rendered_with_sound_numbers() {
+    let _alone = common::alone();
+    let renderer = Renderer::new(&DeviceRequest::default()).unwrap();
+    let random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let fates = try_scenes(renderer, SCENES, ONE_IN, random).unwrap_or_else(|words| panic!("{words}"));
+    println!("{fates:?}");
+    // The strategy means something: a good part of what it makes is refused, and a good part is not.
+    let count = |fate| fates.get(&fate).copied().unwrap_or(0);
+    assert!(count(Fate::Refused) > 100 && count(Fate::Planned) > 200 && count(Fate::Rendered) > 8, "{fates:?}");
+}
+
+#[test]
+fn what_once_failed_does_not_fail_again() {
+    let _alone = common::alone();
+    let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap();
+    let files = fs::read_dir(regressions()).unwrap().map(|entry| entry.unwrap().path());
+    for file in files.filter(|file| file.extension().is_some_and(|ending| ending == "toml")) {
+        let text = fs::read_to_string(&file).unwrap();
+        fate(&mut renderer, &text, true).unwrap_or_else(|words| panic!("{}: {words}", file.display()));
+    }
+}
