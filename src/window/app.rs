@@ -44,6 +44,8 @@ pub enum Event {
     Shaders(Result<(), String>),
     /// The truth has come further: its images, and its state in words.
     Truth(u64, [GpuImage; 2], String),
+    /// There is none of this view.
+    NoTruth(u64, String),
     /// Something was done or failed.
     Said(Tone, String),
 }
@@ -169,6 +171,8 @@ impl App {
         if let Err(error) = open.session.kept.save(self.kept_in.as_deref()) {
             tracing::warn!("settings are not kept: {error}");
         }
+        // The sky ends with the piece at hand; nobody should have to look at that.
+        open.window.set_visible(false);
         let _ = open.presenter.wait_idle();
         open.interface.close();
     }
@@ -197,6 +201,12 @@ impl ApplicationHandler<Event> for App {
             Event::Changed(Changed::Scene) => open.reload(),
             Event::Changed(Changed::Shaders) => open.take_shaders(),
             Event::Shaders(result) => open.shaders_taken(result),
+            Event::NoTruth(number, problem) => {
+                if open.comparison.as_ref().is_some_and(|comparison| comparison.number == number) {
+                    (open.comparison, open.session.truth) = (None, None);
+                    open.session.say(Tone::Failed, problem);
+                }
+            }
             Event::Truth(number, images, state) => {
                 if let Some(comparison) = open.comparison.as_mut().filter(|comparison| comparison.number == number) {
                     comparison.images = Some(images);
@@ -364,12 +374,8 @@ impl Open {
         if self.hidden || !self.session.resolution.is_at_rest(now) {
             return;
         }
-        match Comparison::start(&self.session, size, &self.sky, &self.proxy) {
-            Ok(comparison) => self.comparison = Some(comparison),
-            Err(problem) => {
-                self.session.truth = None;
-                self.session.say(Tone::Failed, problem.to_string());
-            }
-        }
+        self.session.truth = Some("truth: the path tracer begins".to_owned());
+        self.comparison = Some(Comparison::start(&self.session, size, &self.sky, &self.proxy));
+        self.window.request_redraw();
     }
 }

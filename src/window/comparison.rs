@@ -11,7 +11,6 @@ use super::sky::Sky;
 use super::truth::{Exposed, Truth};
 use crate::gpu::{Gpu, GpuError, GpuImage, ImageFormat, ImageShape, NextUse};
 use crate::plan::{Outputs, Settings};
-use crate::reference::SolverError;
 use crate::scene::Scene;
 
 static NUMBER: AtomicU64 = AtomicU64::new(0);
@@ -35,21 +34,17 @@ impl Comparison {
     }
 
     /// Starts the exposure of what a window of so many pixels shows.
-    ///
-    /// # Errors
-    /// [`SolverError`] for a scene that the path tracer cannot trace.
-    pub fn start(
-        session: &Session,
-        size: [u32; 2],
-        sky: &Sky,
-        proxy: &EventLoopProxy<Event>,
-    ) -> Result<Self, SolverError> {
+    pub fn start(session: &Session, size: [u32; 2], sky: &Sky, proxy: &EventLoopProxy<Event>) -> Self {
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
         let traced = session.scene_of_size(size, session.kept.truth_scale);
         let upload = sky.handle();
         let to_window = proxy.clone();
         let truth = Truth::start(traced.clone(), move |exposed| {
             let to_window = to_window.clone();
+            let exposed = match exposed {
+                Ok(exposed) => exposed,
+                Err(error) => return drop(to_window.send_event(Event::NoTruth(number, error.to_string()))),
+            };
             upload.between(move |renderer| {
                 let event = match images(renderer.gpu(), &exposed) {
                     Ok(images) => Event::Truth(number, images, exposed.state),
@@ -57,14 +52,14 @@ impl Comparison {
                 };
                 let _ = to_window.send_event(event);
             });
-        })?;
+        });
         let (real_time, settings) = (truth.real_time(), session.settings());
         sky.capture(traced, settings, Outputs::default(), move |rendered| {
             if let (Ok(rendered), Ok(mut slot)) = (rendered, real_time.lock()) {
                 *slot = Some(rendered.frame);
             }
         });
-        Ok(Self { scene: session.document.scene().clone(), size, settings, number, images: None, _truth: truth })
+        Self { scene: session.document.scene().clone(), size, settings, number, images: None, _truth: truth }
     }
 }
 

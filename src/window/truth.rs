@@ -40,16 +40,18 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Starts to trace what a scene's camera sees; `tell` is called on another thread.
-    ///
-    /// # Errors
-    /// [`SolverError`] for a scene that the path tracer cannot trace.
-    pub fn start(scene: Scene, tell: impl Fn(Exposed) + Send + Sync + 'static) -> Result<Self, SolverError> {
-        let view = CameraView::new(&scene, Solver::Path, 0, 1)?;
+    /// Starts to trace what a scene's camera sees; `tell` is called on other threads, with [`SolverError`] for a scene that
+    /// the path tracer cannot trace.
+    pub fn start(scene: Scene, tell: impl Fn(Result<Exposed, SolverError>) + Send + Sync + 'static) -> Self {
         let (stop, real_time) = (Arc::new(AtomicBool::new(false)), Arc::new(Mutex::new(None)));
-        let watch =
-            Watch { scene, stop: stop.clone(), real_time: real_time.clone(), tell, shown: Mutex::new(None), view };
+        let (stopped, compared) = (stop.clone(), real_time.clone());
         let thread = std::thread::Builder::new().name("truth".to_owned()).spawn(move || {
+            // Preparing a scene takes its time, too.
+            let view = match CameraView::new(&scene, Solver::Path, 0, 1) {
+                Ok(view) => view,
+                Err(error) => return tell(Err(error)),
+            };
+            let watch = Watch { scene, stop: stopped, real_time: compared, tell, shown: Mutex::new(None), view };
             // One core is left to the window and the sky.
             let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
             let pool = rayon::ThreadPoolBuilder::new().num_threads(cores.saturating_sub(1).max(1)).build();
@@ -60,7 +62,7 @@ impl Truth {
                 let _ = pool.install(|| expose(&&watch.view, &mut film, &enough, &watch));
             }
         });
-        Ok(Self { stop, real_time, thread: thread.ok() })
+        Self { stop, real_time, thread: thread.ok() }
     }
 
     /// What the renderer makes of the same view, which the truth is compared with. Shared with whoever brings it.
@@ -86,7 +88,7 @@ struct Watch<T> {
     shown: Mutex<Option<Instant>>,
 }
 
-impl<T: Fn(Exposed) + Send + Sync> Observer for Watch<T> {
+impl<T: Fn(Result<Exposed, SolverError>) + Send + Sync> Observer for Watch<T> {
     fn advanced(&self, _: u64) {}
 
     fn paused(&self, film: &Film, level: bool) -> Result<(), OutputError> {
@@ -106,12 +108,12 @@ impl<T: Fn(Exposed) + Send + Sync> Observer for Watch<T> {
             false => format!("truth: {walks} walks a pixel so far"),
         };
         tracing::info!("{state}");
-        (self.tell)(Exposed {
+        (self.tell)(Ok(Exposed {
             truth: truth.chunks_exact(3).map(|rgb| [rgb[0], rgb[1], rgb[2], 255]).collect(),
             difference: real_time.as_ref().map(|real_time| difference(real_time, &frame)),
             size: [frame.width, frame.height],
             state,
-        });
+        }));
         *shown = Some(Instant::now());
         Ok(())
     }
