@@ -1,5 +1,6 @@
 //! Skies, clouds and fog in real time on Vulkan, with a stated error.
 
+pub mod bake;
 pub mod foreground;
 pub mod frame;
 pub mod gpu;

@@ -1,5 +1,6 @@
 //! Runs a plan on a device: no physics, no Vulkan.
 
+mod bake;
 mod prices;
 mod spectral;
 mod targets;
@@ -172,7 +173,7 @@ impl Renderer {
 
     fn render_frame(&mut self, facts: &Facts) -> Result<Rendered, RenderError> {
         let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
-        let timings = self.execute("frame", facts, &passes, 0)?;
+        let timings = self.execute("frame", facts, &passes, |_| Ok(()))?;
         let images = ["radiance_image", "transmittance_image"];
         let (frame, picture) = self.read_images(&facts.scene.camera, facts.outputs, images)?;
         Ok(Rendered { frame: spectral::in_channels(frame, facts.scene), picture, timings })
@@ -204,7 +205,8 @@ impl Renderer {
                 .with_surface(ends.then_some(Surface::Rays))?;
             let group_rays: Vec<_> = group.iter().map(|&index| rays[index]).collect();
             passes::upload_rays(&mut self.resources, &group_rays, &facts.sky_view_mapping())?;
-            self.execute("probe", &facts, &TABLES.iter().collect::<Vec<_>>(), group.len())?;
+            let passes: Vec<_> = TABLES.iter().collect();
+            self.execute("probe", &facts, &passes, |recording| record_probe(recording, group.len()))?;
             for (index, answer) in group.into_iter().zip(passes::download_answers(&self.resources)?) {
                 answers[index] = answer;
             }
@@ -212,8 +214,14 @@ impl Renderer {
         Ok(answers)
     }
 
-    /// Plans and runs passes, and then a probe of so many rays.
-    fn execute(&mut self, label: &str, facts: &Facts, passes: &[&Pass], rays: usize) -> Result<Timings, RenderError> {
+    /// Plans and runs passes, and then what is no part of a plan.
+    fn execute(
+        &mut self,
+        label: &str,
+        facts: &Facts,
+        passes: &[&Pass],
+        and_then: impl FnOnce(&mut Recording) -> Result<(), RenderError>,
+    ) -> Result<Timings, RenderError> {
         let facts = &facts.clone().with_tables_up_to(self.resources.widest_tables);
         let declarations: Vec<_> = passes.iter().map(|pass| pass.declaration).collect();
         let plan = Plan::new(facts, &self.history, &declarations);
@@ -223,9 +231,7 @@ impl Renderer {
         for pass in passes.iter().filter(|pass| plan.decision(pass.declaration.name) == Some(Decision::Run)) {
             (pass.record)(&mut recording)?;
         }
-        if rays > 0 {
-            record_probe(&mut recording, rays)?;
-        }
+        and_then(&mut recording)?;
         recording.leave_targets();
         let completed = recording.finish()?;
         self.history.record(&plan);

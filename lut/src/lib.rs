@@ -8,20 +8,25 @@
 //! Units are SI throughout: metres, 1/m, radians, W·m⁻²·sr⁻¹·nm⁻¹. Everything is `f64`.
 #![forbid(unsafe_code)]
 
+pub mod bake;
 mod bands;
 pub mod cloud;
 pub mod geometry;
 pub mod height_field;
 pub mod mapping;
 mod medium;
+pub mod pack;
 pub mod phase;
 mod planet;
 mod profile;
 pub mod quadrature;
+pub mod sky_tables;
 pub mod spectrum;
+mod table;
 
 pub use bands::{BAND_COUNT, BAND_NAMES, BAND_WAVELENGTHS_NM, Bands};
 pub use medium::{Constituent, Medium, MediumError};
 pub use phase::{DropletFit, PhaseError, PhaseFunction, TabulatedPhase};
 pub use planet::{Planet, PlanetError};
 pub use profile::{DensityProfile, ProfileError};
+pub use table::Table;

@@ -107,3 +107,19 @@ fn shadow_interval_m(radius_m: f32, altitude_m: f32, mu: f32, mu_s: f32, nu: f32
     }
     return vec2<f32>(max(start, 0.0), min(end, length_m));
 }
+
+// acos, within 2e-8 of its value before rounding: what devices have may be thousands of times farther off, which tables
+// show. Abramowitz & Stegun, Handbook of Mathematical Functions, 4.4.46.
+fn precise_acos(x: f32) -> f32 {
+    let a = abs(x);
+    var sum = -0.0012624911;
+    sum = sum * a + 0.0066700901;
+    sum = sum * a - 0.0170881256;
+    sum = sum * a + 0.0308918810;
+    sum = sum * a - 0.0501743046;
+    sum = sum * a + 0.0889789874;
+    sum = sum * a - 0.2145988016;
+    sum = sum * a + 1.5707963050;
+    let angle = sqrt(max(1.0 - a, 0.0)) * sum;
+    return select(angle, 3.14159265 - angle, x < 0.0);
+}

@@ -10,7 +10,7 @@
 //
 // Tables hold logarithms, or optical depth; y = 0 is the first row in memory, z = 0 the first slice.
 
-#import welkin::geometry::{air_length_m, distance_to_shell_from_above, horizon_mu}
+#import welkin::geometry::{air_length_m, distance_to_shell_from_above, horizon_mu, precise_acos}
 #import welkin::mapping::{
     inset, multiple_scattering_to_unit, optical_depth_to_unit, sky_view_to_unit, SkyViewRange, PI
 }
@@ -145,9 +145,9 @@ fn scattering_place(entry: AirEntry, nu: f32) -> ScatteringPlace {
     let size = vec3<f32>(textureDimensions(scattering_table));
     let sines = sqrt(max((1.0 - entry.mu * entry.mu) * (1.0 - entry.mu_s * entry.mu_s), 0.0));
     let cos_phi = clamp((nu - entry.mu * entry.mu_s) / max(sines, 1e-6), -1.0, 1.0);
-    let horizon_rad = acos(horizon_mu(sky.radius_m, entry.altitude_m));
+    let horizon_rad = precise_acos(horizon_mu(sky.radius_m, entry.altitude_m));
     let range = SkyViewRange(horizon_rad, 0.0, 1.0, 1.0);
-    let view = sky_view_to_unit(acos(clamp(entry.mu, -1.0, 1.0)), acos(cos_phi), entry.hits_ground, range);
+    let view = sky_view_to_unit(precise_acos(entry.mu), precise_acos(cos_phi), entry.hits_ground, range);
     let light = multiple_scattering_to_unit(entry.altitude_m, entry.mu_s, sky.top_m, sky.sun_warp);
     let azimuths = f32(sky.azimuth_count);
     let suns = size.x / azimuths;

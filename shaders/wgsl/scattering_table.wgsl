@@ -4,10 +4,10 @@
 // of a frame: packs, and engines that bake at run time, dispatch it.
 
 #import welkin::atmosphere::{atmosphere, SCATTERER_COUNT}
-#import welkin::geometry::horizon_mu
+#import welkin::geometry::{horizon_mu, precise_acos}
 #import welkin::mapping
 #import welkin::march::{air_length_m, cut_at_shadow, table_altitude_m, view_ray}
-#import welkin::view_integrals::{integrate, logarithm}
+#import welkin::view_integrals::integrate
 
 struct ScatteringLayout {
     // Tiles along x.
@@ -24,6 +24,14 @@ struct ScatteringLayout {
 @group(0) @binding(7) var scattering_table: texture_storage_3d<rgba32float, write>;
 
 const LAYER_COUNT: u32 = 1u + SCATTERER_COUNT;
+
+// Light per metre below which all is night: over the longest ray a hundredth of the natural night sky. A floor much lower
+// would stand so far from lit texels, in logarithms, that a filter's rounding between them were seen.
+const NIGHT: f32 = 1e-16;
+
+fn logarithm(light: vec3<f32>) -> vec3<f32> {
+    return log(max(light, vec3<f32>(NIGHT)));
+}
 
 // x, y: as in the table; z: (half of the view sphere, altitude).
 @compute @workgroup_size(8, 8)
@@ -42,7 +50,7 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     let mu_s = light.mu;
     let tile = vec2<u32>(texel.x / suns, texel.y);
     let view_unit = mapping::unit_from_texel(tile, vec2<f32>(vec2<u32>(scattering_layout.azimuth_count, size.y)));
-    let range = mapping::SkyViewRange(acos(horizon_mu(atmosphere.radius_m, altitude_m)), 0.0, 1.0, 1.0);
+    let range = mapping::SkyViewRange(precise_acos(horizon_mu(atmosphere.radius_m, altitude_m)), 0.0, 1.0, 1.0);
     let view = mapping::sky_view_from_unit(view_unit, below_horizon, range);
     let mu = cos(view.zenith_rad);
     let sines = sin(view.zenith_rad) * sqrt(max(1.0 - mu_s * mu_s, 0.0));

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod backend;
+mod bake;
 mod compare;
 mod explain;
 mod failure;
@@ -44,6 +45,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Bake(bake::Arguments),
     Compare(compare::Arguments),
     Explain(explain::Arguments),
     Merge(merge::Arguments),
@@ -62,6 +64,7 @@ enum Command {
 pub fn run() -> ExitCode {
     log::show();
     let outcome = match Cli::parse().command {
+        Command::Bake(arguments) => bake::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),

@@ -30,6 +30,7 @@ pub mod ordinates;
 mod probe;
 mod recording;
 mod resources;
+mod scattering_table;
 mod sky_view;
 mod terrain;
 mod view_emission;
@@ -40,6 +41,7 @@ pub use foreground::upload as upload_foreground;
 pub use probe::{download as download_answers, record as record_probe, upload as upload_rays};
 pub use recording::{Parameters, Recording};
 pub use resources::Resources;
+pub use scattering_table::record as record_scattering_table;
 
 use crate::foreground::ForegroundError;
 use crate::gpu::{GpuError, ImageFormat};

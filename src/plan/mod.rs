@@ -1,5 +1,6 @@
 //! What a scene calls for: a pure function from facts and history to a [`Plan`]. Knows nothing of Vulkan.
 
+mod bake;
 mod cloud_settings;
 mod declaration;
 mod disc;
@@ -13,6 +14,7 @@ mod skipping;
 
 use std::collections::BTreeMap;
 
+pub use bake::bake_settings;
 pub use cloud_settings::{CloudScattering, CloudSettings};
 pub use declaration::{Declaration, Fingerprint, Need};
 pub use facts::{ConstituentGroups, Facts, Outputs, SpectralPart, Surface, Viewpoint};

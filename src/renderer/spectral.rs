@@ -49,7 +49,7 @@ impl Renderer {
             let at = scene.at(&part.wavelengths);
             let facts = Facts { part: Some(*part), ..Facts::new(&at, settings, Orders::All, outputs)? };
             self.select_group(part.index);
-            let timings = self.execute("frame", &facts, &passes, 0);
+            let timings = self.execute("frame", &facts, &passes, |_| Ok(()));
             // The next group overwrites the images of the frame.
             FRAME.iter().for_each(|pass| self.history.forget(pass.declaration.name));
             timings

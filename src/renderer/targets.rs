@@ -91,7 +91,7 @@ impl Renderer {
         }
         let facts = Facts::new(scene, settings, Orders::All, outputs)?;
         let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
-        self.execute("frame", &facts, &passes, 0)
+        self.execute("frame", &facts, &passes, |_| Ok(()))
     }
 
     fn forget_writers_of(&mut self, name: &str) {

@@ -49,7 +49,7 @@ impl SkyViewMapping {
         let top_m = planet.atmosphere_height_m;
         let horizon_rad = PI - angular_radius(0.0);
         if altitude_m <= top_m {
-            return Self { horizon_rad, sky_end_rad: 0.0, sky_end_y: 1.0, last_y: 1.0 };
+            return Self::within_air(horizon_rad);
         }
         // At the top: the horizon's dip over its zenith angle.
         let dip_rad = (planet.radius_m / (planet.radius_m + top_m)).acos();
@@ -58,6 +58,11 @@ impl SkyViewMapping {
         let sky_end_y = crossing_y + (1.0 - crossing_y) * spread;
         let last_y = sky_end_y - 0.5 / f64::from(rows - 1);
         Self { horizon_rad, sky_end_rad: PI - angular_radius(top_m), sky_end_y, last_y }
+    }
+
+    /// The view of an observer in the air whose horizon has this zenith angle, rad.
+    pub fn within_air(horizon_rad: f64) -> Self {
+        Self { horizon_rad, sky_end_rad: 0.0, sky_end_y: 1.0, last_y: 1.0 }
     }
 
     /// Which half a direction belongs to.

@@ -1,0 +1,107 @@
+//! The air that tables are made of.
+
+use crate::phase::PhaseLobe;
+use crate::{BAND_COUNT, Bands, Constituent, DensityProfile, Medium, MediumError, PhaseFunction, Planet, PlanetError};
+
+/// Scatterers that shaders have room for.
+pub const MAX_SCATTERERS: usize = 8;
+
+/// A planet with its air, checked and in the order in which shaders count.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Air {
+    planet: Planet,
+    /// Those that scatter, then those that only absorb.
+    constituents: Vec<Constituent>,
+    scatterer_count: usize,
+}
+
+/// Why tables cannot be made of an air.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AirError {
+    /// The planet is impossible.
+    #[error(transparent)]
+    Planet(#[from] PlanetError),
+    /// The medium is impossible.
+    #[error(transparent)]
+    Medium(#[from] MediumError),
+    /// A phase function is a table.
+    #[error(
+        "constituent '{0}' has a tabulated phase function; shaders evaluate closed forms only, so choose one of them"
+    )]
+    TabulatedPhase(String),
+    /// Nothing scatters.
+    #[error("no constituent scatters in any band; there is no sky to tabulate")]
+    NothingScatters,
+    /// There are too many scatterers.
+    #[error("{0} constituents scatter; tables hold at most {MAX_SCATTERERS}, so join those that are alike")]
+    TooManyScatterers(usize),
+}
+
+impl Air {
+    /// Checks everything, and leaves out what does nothing to light. Emission is not tabulated.
+    ///
+    /// # Errors
+    /// [`AirError`] with what is wrong and what is allowed.
+    pub fn new(planet: &Planet, medium: &Medium) -> Result<Self, AirError> {
+        planet.validate()?;
+        medium.validate()?;
+        let weakens = |c: &&Constituent| c.extinction_per_m().iter().any(|&c| c > 0.0);
+        let mut constituents: Vec<_> = medium.constituents.iter().filter(weakens).cloned().collect();
+        constituents.sort_by_key(|c| (!c.scatters(), profile_rank(&c.profile)));
+        let scatterers = constituents.iter().filter(|c| c.scatters());
+        if let Some(tabulated) = scatterers.clone().find(|c| matches!(c.phase, PhaseFunction::Tabulated(_))) {
+            return Err(AirError::TabulatedPhase(tabulated.name.clone()));
+        }
+        let scatterer_count = scatterers.count();
+        if scatterer_count == 0 {
+            return Err(AirError::NothingScatters);
+        }
+        if scatterer_count > MAX_SCATTERERS {
+            return Err(AirError::TooManyScatterers(scatterer_count));
+        }
+        Ok(Self { planet: planet.clone(), constituents, scatterer_count })
+    }
+
+    /// The planet.
+    pub fn planet(&self) -> &Planet {
+        &self.planet
+    }
+
+    /// Constituents that scatter, in the order of the tables' layers.
+    pub fn scatterers(&self) -> &[Constituent] {
+        &self.constituents[..self.scatterer_count]
+    }
+
+    /// The lobes of each scatterer's phase function.
+    pub fn phase_lobes(&self) -> Vec<Vec<PhaseLobe>> {
+        self.scatterers().iter().map(|c| c.phase.lobes()).collect()
+    }
+
+    pub(super) fn extinction_per_m(&self, altitude_m: f64) -> Bands {
+        let mut sum = [0.0; BAND_COUNT];
+        for constituent in &self.constituents {
+            let density = constituent.profile.density(altitude_m);
+            for (sum, c) in sum.iter_mut().zip(constituent.extinction_per_m()) {
+                *sum += c * density;
+            }
+        }
+        sum
+    }
+
+    /// Scattering coefficients of each scatterer at an altitude, 1/m.
+    pub(super) fn scattering_per_m(&self, altitude_m: f64) -> impl Iterator<Item = Bands> {
+        self.scatterers().iter().map(move |c| {
+            let density = c.profile.density(altitude_m);
+            c.scattering_per_m.map(|b| b * density)
+        })
+    }
+}
+
+/// The shaders' order of profiles.
+fn profile_rank(profile: &DensityProfile) -> u8 {
+    match profile {
+        DensityProfile::Exponential { .. } => 0,
+        DensityProfile::Tent { .. } => 1,
+        DensityProfile::Layer { .. } => 2,
+    }
+}

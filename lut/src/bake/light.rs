@@ -1,0 +1,163 @@
+//! Light along rays, order by order, from tables of what comes before; for unit irradiance of the light.
+
+use std::f64::consts::PI;
+
+use crate::geometry::horizon_mu;
+use crate::mapping::{MultipleScatteringMapping, OpticalDepthMapping};
+use crate::quadrature::{GaussNode, gauss_legendre};
+use crate::table::Table;
+use crate::{BAND_COUNT, Bands};
+
+use super::harmonics::{DEGREE_OF, MAX_DEGREES, harmonics};
+use super::ray::AirRay;
+use super::{Air, BakeSettings};
+
+/// Below this, light is dark; it keeps logarithms finite.
+pub(super) const DARK: f64 = 1e-30;
+
+/// What rays are integrated with.
+pub(super) struct Light<'a> {
+    pub(super) air: &'a Air,
+    pub(super) settings: BakeSettings,
+    pub(super) rule: Vec<GaussNode>,
+    optical_depth: Table,
+    /// χ_l of each scatterer.
+    moments: Vec<Vec<f64>>,
+}
+
+/// Light along one view ray, without what depends on the angle to the light alone.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Integrals {
+    /// Multiply scattered radiance, 1/sr.
+    pub(super) multiple: Bands,
+    /// ∫b T T_light dt of each scatterer: its phase function is missing.
+    pub(super) single: Vec<Bands>,
+}
+
+impl<'a> Light<'a> {
+    pub(super) fn new(air: &'a Air, settings: BakeSettings, optical_depth: Table) -> Self {
+        let degrees = settings.degree_count as usize;
+        let moments = |phase: &crate::PhaseFunction| (0..degrees).map(|l| phase.legendre_moment(l)).collect();
+        Self {
+            air,
+            settings,
+            rule: gauss_legendre(settings.nodes_per_leg as usize),
+            optical_depth,
+            moments: air.scatterers().iter().map(|c| moments(&c.phase)).collect(),
+        }
+    }
+
+    pub(super) fn top_m(&self) -> f64 {
+        self.air.planet().atmosphere_height_m
+    }
+
+    pub(super) fn optical_depth_to_top(&self, altitude_m: f64, mu: f64) -> Bands {
+        let mapping = OpticalDepthMapping { radius_m: self.air.planet().radius_m, top_m: self.top_m() };
+        self.optical_depth.at_unit(mapping.unit(altitude_m, mu), 0)
+    }
+
+    /// Radiance that the ground where a ray ends adds, given the irradiance there.
+    fn add_ground(&self, radiance: &mut Bands, optical_depth: Bands, irradiance: Bands) {
+        let albedo = self.air.planet().ground_albedo;
+        for band in 0..BAND_COUNT {
+            radiance[band] += (-optical_depth[band]).exp() * albedo[band] / PI * irradiance[band];
+        }
+    }
+
+    /// Light scattered once, or reflected once by the ground.
+    pub(super) fn first_order(&self, ray: AirRay) -> Bands {
+        let ray = ray.cut_at_shadow(self.air);
+        let phases: Vec<_> = self.air.scatterers().iter().map(|c| c.phase.value(ray.nu)).collect();
+        let mut radiance = [0.0; BAND_COUNT];
+        let whole = ray.walk(self.air, &self.rule, |node| {
+            if node.dark {
+                return;
+            }
+            let light = self.optical_depth_to_top(node.altitude_m, node.mu_s);
+            for (b, phase) in self.air.scattering_per_m(node.altitude_m).zip(&phases) {
+                for band in 0..BAND_COUNT {
+                    let transmittance = (-node.optical_depth[band] - light[band]).exp();
+                    radiance[band] += node.weight_m * b[band] * phase * transmittance;
+                }
+            }
+        });
+        if ray.hits_ground {
+            let mu_s = ray.ground_mu_s(self.air);
+            if mu_s > 0.0 {
+                let irradiance = self.optical_depth_to_top(0.0, mu_s).map(|tau| mu_s * (-tau).exp());
+                self.add_ground(&mut radiance, whole, irradiance);
+            }
+        }
+        radiance
+    }
+
+    /// Light of one order more than a table holds.
+    pub(super) fn next_order(&self, table: &Table, ray: AirRay) -> Bands {
+        let mut radiance = [0.0; BAND_COUNT];
+        let whole = ray.walk(self.air, &self.rule, |node| {
+            let source = self.source(table, node.altitude_m, [node.mu, node.mu_s, node.cos_phi]);
+            for band in 0..BAND_COUNT {
+                radiance[band] += node.weight_m * (-node.optical_depth[band]).exp() * source[band];
+            }
+        });
+        if ray.hits_ground {
+            let unit = MultipleScatteringMapping::new(self.air.planet()).unit(0.0, ray.ground_mu_s(self.air));
+            let irradiance = table.at_unit(unit, self.settings.coefficient_count()).map(f64::exp);
+            self.add_ground(&mut radiance, whole, irradiance);
+        }
+        radiance
+    }
+
+    /// What a view ray's tables hold of it.
+    pub(super) fn integrals(&self, table: &Table, ray: AirRay, rule: &[GaussNode]) -> Integrals {
+        let ray = ray.cut_at_shadow(self.air);
+        let mut multiple = [0.0; BAND_COUNT];
+        let mut single = vec![[0.0; BAND_COUNT]; self.air.scatterers().len()];
+        ray.walk(self.air, rule, |node| {
+            let transmittance = node.optical_depth.map(|tau| (-tau).exp());
+            let source = self.source(table, node.altitude_m, [node.mu, node.mu_s, node.cos_phi]);
+            for band in 0..BAND_COUNT {
+                multiple[band] += node.weight_m * transmittance[band] * source[band];
+            }
+            if node.dark {
+                return;
+            }
+            let light = self.optical_depth_to_top(node.altitude_m, node.mu_s);
+            for (sum, b) in single.iter_mut().zip(self.air.scattering_per_m(node.altitude_m)) {
+                for band in 0..BAND_COUNT {
+                    sum[band] += node.weight_m * b[band] * transmittance[band] * (-light[band]).exp();
+                }
+            }
+        });
+        Integrals { multiple, single }
+    }
+
+    /// Radiance sent into the view direction per metre: Σ b_c ∫p_c I dω'.
+    fn source(&self, table: &Table, altitude_m: f64, [mu, mu_s, cos_phi]: [f64; 3]) -> Bands {
+        let unit = MultipleScatteringMapping::new(self.air.planet()).unit(altitude_m, mu_s);
+        let y = harmonics(mu, cos_phi, self.settings.degree_count);
+        let mut by_degree = [[0.0; BAND_COUNT]; MAX_DEGREES];
+        for (b, moments) in self.air.scattering_per_m(altitude_m).zip(&self.moments) {
+            for (sum, chi) in by_degree.iter_mut().zip(moments) {
+                (0..BAND_COUNT).for_each(|band| sum[band] += chi * b[band]);
+            }
+        }
+        let mut relative = by_degree[0].map(|b| b * y[0]);
+        for k in 1..self.settings.coefficient_count() as usize {
+            let (coefficient, scattering) = (table.at_unit(unit, k as u32), by_degree[DEGREE_OF[k]]);
+            (0..BAND_COUNT).for_each(|band| relative[band] += scattering[band] * y[k] * coefficient[band]);
+        }
+        let mean = table.at_unit(unit, 0);
+        std::array::from_fn(|band| relative[band].max(0.0) * mean[band].exp())
+    }
+
+    /// Cosine of the horizon's zenith angle at an altitude.
+    pub(super) fn horizon_mu(&self, altitude_m: f64) -> f64 {
+        horizon_mu(self.air.planet().radius_m, altitude_m)
+    }
+}
+
+/// The optical depth from an altitude along μ, above the horizon, to the top.
+pub(super) fn optical_depth(air: &Air, altitude_m: f64, mu: f64) -> Bands {
+    AirRay::new(air, altitude_m, [mu, 1.0, mu], false).optical_depth(air)
+}

@@ -1,0 +1,110 @@
+//! The CPU bake against what is known of light.
+
+mod small_air;
+
+use std::f64::consts::PI;
+use std::sync::Mutex;
+
+use small_air::{SMALL, earth};
+use welkin_lut::bake::{Air, AirError, BakeSettings, Baked, Directions};
+use welkin_lut::phase::TabulatedPhase;
+use welkin_lut::{Medium, PhaseFunction, Planet};
+
+#[test]
+fn optical_depth_straight_up_is_the_column_of_all_constituents() {
+    let air = earth();
+    let baked = Baked::new(&air, SMALL, &|_| {});
+    // Rayleigh 8 km, haze 1.2 km, ozone's tent 15 km: columns in closed form.
+    let column = |scale_m: f64| scale_m * -(-100_000.0 / scale_m).exp_m1();
+    let rayleigh = [5.802e-6, 13.558e-6, 33.1e-6];
+    let ozone = [0.65e-6, 1.881e-6, 0.085e-6];
+    let found = baked.tables().transmittance_to_space(0.0, 1.0);
+    for band in 0..3 {
+        let depth = rayleigh[band] * column(8000.0) + 4.44e-6 * column(1200.0) + ozone[band] * 15_000.0;
+        // The kinks of ozone's tent lie between the panels of Simpson's rule.
+        assert!((-found[band].ln() / depth - 1.0).abs() < 2e-4, "{band}: {} and {depth}", -found[band].ln());
+    }
+}
+
+/// The share of the sun's light that leaves the top of a flat layer of air again.
+fn reflectance(ground_albedo: f64, mu_s: f64) -> f64 {
+    let mut constituents = earth().scatterers().to_vec();
+    constituents.truncate(1);
+    constituents[0].scattering_per_m = [20e-6; 3];
+    let planet = Planet { radius_m: 6e8, atmosphere_height_m: 60_000.0, ground_albedo: [ground_albedo; 3] };
+    let air = Air::new(&planet, &Medium { constituents }).unwrap();
+    let directions = Directions { below: 6, band: 2, above: 8, azimuths: 8 };
+    let finer = BakeSettings { nodes_per_leg: 12, orders: 8, directions, multiple_scattering_size: [32, 12], ..SMALL };
+    let baked = Baked::new(&air, finer, &|_| {});
+    let tables = baked.tables();
+    let (cosines, azimuths) = (200, 16);
+    let mut up = 0.0;
+    for i in 0..cosines {
+        let mu = -(f64::from(i) + 0.5) / f64::from(cosines);
+        for k in 0..azimuths {
+            let phi = (f64::from(k) + 0.5) * PI / f64::from(azimuths);
+            let nu = mu * mu_s + ((1.0 - mu * mu) * (1.0 - mu_s * mu_s)).sqrt() * phi.cos();
+            let cosines_of_ray = [mu, mu_s, nu];
+            let air = tables.sky_radiance(60_000.0, cosines_of_ray)[1];
+            let ground = tables.ground_radiance(60_000.0, cosines_of_ray)[1];
+            up += -mu * (air + ground) * 2.0 * PI / f64::from(azimuths) / f64::from(cosines);
+        }
+    }
+    up / mu_s
+}
+
+#[test]
+fn air_that_absorbs_nothing_over_white_ground_gives_all_light_back() {
+    for mu_s in [0.3, 1.0] {
+        let white = reflectance(1.0, mu_s);
+        println!("mu_s {mu_s}: {white:.4}");
+        // Within what the small tables cost.
+        assert!((white - 1.0).abs() < 0.015, "{white}");
+    }
+    // Negative control: ground that keeps a twentieth is noticed.
+    assert!(reflectance(0.95, 1.0) < 0.97);
+}
+
+#[test]
+fn a_bake_says_how_far_it_has_come_and_is_the_same_on_any_number_of_threads() {
+    let air = earth();
+    let said = Mutex::new(Vec::new());
+    let baked = Baked::new(&air, SMALL, &|progress| said.lock().unwrap().push(progress.done));
+    let said = said.into_inner().unwrap();
+    assert!(said.len() > 4 && said[0] == 0.0 && said.last() == Some(&1.0), "{said:?}");
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let again = alone.install(|| Baked::new(&air, SMALL, &|_| {}));
+    assert!(baked.tables() == again.tables());
+}
+
+#[test]
+fn tables_are_what_evaluation_gives_at_their_texels() {
+    let air = earth();
+    let baked = Baked::new(&air, SMALL, &|_| {});
+    let table = &baked.tables().set().multiple_scattering;
+    let mapping = welkin_lut::mapping::MultipleScatteringMapping::new(air.planet());
+    for texel in [[0, 0], [15, 0], [7, 3], [11, 7]] {
+        let [altitude_m, mu_s] = mapping.parameters(welkin_lut::mapping::unit_from_texel(texel, [16, 8]));
+        for (k, value) in baked.multiple_scattering(altitude_m, mu_s).into_iter().enumerate() {
+            let stored = table.texel(texel[0], texel[1], k as u32);
+            for band in 0..3 {
+                assert!((value[band] - stored[band]).abs() < 1e-6, "{texel:?} {k}: {value:?} and {stored:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn air_that_shaders_cannot_read_is_refused_with_what_to_do() {
+    let planet = earth().planet().clone();
+    let nothing = Air::new(&planet, &Medium::default()).unwrap_err();
+    assert_eq!(nothing, AirError::NothingScatters);
+    let mut constituents = vec![earth().scatterers()[0].clone(); 9];
+    let many = Air::new(&planet, &Medium { constituents: constituents.clone() }).unwrap_err();
+    assert_eq!(many, AirError::TooManyScatterers(9));
+    let table = TabulatedPhase::from_points(&[(-1.0, 0.7), (0.0, 0.5), (1.0, 1.0)]);
+    constituents.truncate(1);
+    constituents[0].phase = PhaseFunction::Tabulated(std::sync::Arc::new(table.unwrap()));
+    let tabulated = Air::new(&planet, &Medium { constituents }).unwrap_err();
+    assert!(tabulated.to_string().contains("closed forms"), "{tabulated}");
+}
