@@ -27,6 +27,8 @@ fn settings() -> Settings {
     let clouds = CloudSettings {
         scattering: CloudScattering::Ordinates16,
         sweeps: 4,
+        ordinate_cell_m: 960,
+        ordinate_cells: 16,
         near_samples: 2,
         grid_size: 32,
         grid_slices: 6,

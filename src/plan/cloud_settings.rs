@@ -82,7 +82,9 @@ impl CloudSettings {
         };
         match quality {
             Quality::Low => Self {
-                scattering: CloudScattering::OctavesFitted,
+                sweeps: 12,
+                ordinate_cell_m: 240,
+                ordinate_cells: 32,
                 near_samples: 0,
                 step_m: 30,
                 step_permille: 10,
