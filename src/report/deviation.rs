@@ -6,6 +6,9 @@ use welkin_lut::spectrum::Channels;
 
 use schemars::JsonSchema;
 
+/// The relative error of each band of a pixel, and how much of it is the truth's own noise.
+type BandErrors = [(f64, f64); BAND_COUNT];
+
 /// Share of the truth's mean radiance below which an error is taken relative to that instead.
 const DARK: f64 = 1e-4;
 
@@ -60,9 +63,8 @@ impl Deviation {
             return None;
         }
         let errors = counted.iter().map(|&pixel| relative(ours[pixel], truth, pixel, dark)).collect::<Vec<_>>();
-        let mean = |of: &dyn Fn(&[(f64, f64); BAND_COUNT]) -> f64| errors.iter().map(of).sum::<f64>() / pixels as f64;
-        let squares =
-            |bands: &[(f64, f64); BAND_COUNT]| band_mean(bands, |(error, noise)| error * error - noise * noise);
+        let mean = |of: &dyn Fn(&BandErrors) -> f64| errors.iter().map(of).sum::<f64>() / pixels as f64;
+        let squares = |bands: &BandErrors| band_mean(bands, |(error, noise)| error * error - noise * noise);
         let square = mean(&squares);
         let spread = mean(&|bands| (squares(bands) - square).powi(2));
         let bar = (spread / (pixels as f64 - 1.0).max(1.0)).sqrt();
@@ -84,12 +86,12 @@ impl Deviation {
     }
 }
 
-fn band_mean(bands: &[(f64, f64); BAND_COUNT], of: impl Fn((f64, f64)) -> f64) -> f64 {
+fn band_mean(bands: &BandErrors, of: impl Fn((f64, f64)) -> f64) -> f64 {
     bands.iter().map(|band| of(*band)).sum::<f64>() / BAND_COUNT as f64
 }
 
 /// Relative error and relative standard error of the truth, in each band of a pixel.
-fn relative(ours: [f32; BAND_COUNT], truth: &Uncertain, pixel: usize, dark: f64) -> [(f64, f64); BAND_COUNT] {
+fn relative(ours: [f32; BAND_COUNT], truth: &Uncertain, pixel: usize, dark: f64) -> BandErrors {
     let (value, noise) = (truth.radiance[pixel].map(f64::from), truth.standard_error[pixel].map(f64::from));
     let strongest = value.iter().fold(dark, |strongest, value| strongest.max(*value));
     std::array::from_fn(|band| {

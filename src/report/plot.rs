@@ -125,6 +125,9 @@ fn legend<'a, 'b: 'a>(chart: &mut Chart<'a, 'b>, position: SeriesLabelPosition) 
     Ok(())
 }
 
+/// What a kind of point is called, its colour and size, and which points are of it.
+type Kind = (&'static str, RGBColor, i32, fn(&Point) -> bool);
+
 fn points(chart: &mut Chart, scene: &SceneResults) -> Result<(), ReportError> {
     let line = front(&scene.points).into_iter().map(place).collect::<Vec<_>>();
     chart
@@ -136,7 +139,7 @@ fn points(chart: &mut Chart, scene: &SceneResults) -> Result<(), ReportError> {
         let (x, bottom, top) = (place(point).0, 100.0 * point.error.low, 100.0 * point.error.high);
         PathElement::new(vec![(x, bottom.max(1e-4)), (x, top.max(1e-4))], LADDER.mix(0.6))
     }))?;
-    let kinds: [(&str, RGBColor, i32, fn(&Point) -> bool); 4] = [
+    let kinds: [Kind; 4] = [
         ("one group of settings varied", VARIATION, 3, |point| point.family == Family::Variation),
         ("between the presets, by both treatments", LADDER, 3, |point| {
             point.family == Family::Ladder && point.preset.is_none()
