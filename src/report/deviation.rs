@@ -6,9 +6,6 @@ use welkin_lut::spectrum::Channels;
 
 use schemars::JsonSchema;
 
-/// The relative error of each band of a pixel, and how much of it is the truth's own noise.
-type BandErrors = [(f64, f64); BAND_COUNT];
-
 /// Share of the truth's mean radiance below which an error is taken relative to that instead.
 const DARK: f64 = 1e-4;
 
@@ -86,11 +83,13 @@ impl Deviation {
     }
 }
 
+/// Relative error and relative standard error of the truth, in each band of a pixel.
+type BandErrors = [(f64, f64); BAND_COUNT];
+
 fn band_mean(bands: &BandErrors, of: impl Fn((f64, f64)) -> f64) -> f64 {
     bands.iter().map(|band| of(*band)).sum::<f64>() / BAND_COUNT as f64
 }
 
-/// Relative error and relative standard error of the truth, in each band of a pixel.
 fn relative(ours: [f32; BAND_COUNT], truth: &Uncertain, pixel: usize, dark: f64) -> BandErrors {
     let (value, noise) = (truth.radiance[pixel].map(f64::from), truth.standard_error[pixel].map(f64::from));
     let strongest = value.iter().fold(dark, |strongest, value| strongest.max(*value));

@@ -15,6 +15,9 @@ const REFERENCE: RGBColor = RGBColor(190, 120, 30);
 const PRESET: RGBColor = RGBColor(190, 30, 60);
 const FRONT: RGBColor = RGBColor(40, 90, 170);
 
+/// Points that look alike: what they are called, their colour and radius, and whether a point is one of them.
+type Kind = (&'static str, RGBColor, i32, fn(&Point) -> bool);
+
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
 /// The plot of one scene. Both axes are logarithmic; an error that cannot be told from zero stands at its upper bar.
@@ -124,9 +127,6 @@ fn legend<'a, 'b: 'a>(chart: &mut Chart<'a, 'b>, position: SeriesLabelPosition) 
         .draw()?;
     Ok(())
 }
-
-/// What a kind of point is called, its colour and size, and which points are of it.
-type Kind = (&'static str, RGBColor, i32, fn(&Point) -> bool);
 
 fn points(chart: &mut Chart, scene: &SceneResults) -> Result<(), ReportError> {
     let line = front(&scene.points).into_iter().map(place).collect::<Vec<_>>();

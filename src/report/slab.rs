@@ -12,8 +12,6 @@ use welkin_lut::PhaseFunction;
 
 /// Streams in each hemisphere of what counts as the truth: more than any method that is compared has.
 const TRUTH: DiscreteOrdinates = DiscreteOrdinates { streams: 32 };
-/// Walks of the path tracer.
-const WALKS: [u64; 3] = [1_000, 10_000, 100_000];
 /// Repetitions of each time, of slow methods fewer.
 const RUNS: usize = 7;
 /// Time after which a method is not repeated, s.
@@ -43,8 +41,9 @@ pub struct SlabPoint {
     pub milliseconds: Spread,
 }
 
-/// All families on a thin, a cloud-like and an absorbing slab.
-pub fn slab_results() -> Vec<SlabResults> {
+/// All families on a thin, a cloud-like and an absorbing slab,
+/// with so many walks of the path tracer.
+pub fn slab_results(walks: &[u64]) -> Vec<SlabResults> {
     let slab = |optical_thickness, albedo, g, mu0| Slab {
         optical_thickness,
         albedo,
@@ -52,14 +51,17 @@ pub fn slab_results() -> Vec<SlabResults> {
         mu0,
         surface_albedo: 0.1,
     };
-    [slab(0.3, 0.95, 0.7, 0.5), slab(16.0, 1.0, 0.85, 0.6), slab(4.0, 0.9, 0.85, 0.3)].iter().map(results).collect()
+    [slab(0.3, 0.95, 0.7, 0.5), slab(16.0, 1.0, 0.85, 0.6), slab(4.0, 0.9, 0.85, 0.3)]
+        .iter()
+        .map(|slab| results(slab, walks))
+        .collect()
 }
 
-fn results(slab: &Slab) -> SlabResults {
+fn results(slab: &Slab, walks: &[u64]) -> SlabResults {
     let truth = TRUTH.fluxes(slab);
     let mut points: Vec<SlabPoint> =
         families::all().iter().map(|method| point(method.name(), &truth, || method.fluxes(slab))).collect();
-    points.extend(WALKS.map(|walks| {
+    points.extend(walks.iter().map(|&walks| {
         point(format!("path tracer, {walks} walks"), &truth, || {
             let fluxes = slab.fluxes(walks, walks);
             Fluxes { reflectance: fluxes.reflectance.value, diffuse_transmittance: fluxes.diffuse_transmittance.value }

@@ -98,6 +98,8 @@ pub struct Case {
 pub struct Request {
     /// The scenes.
     pub cases: Vec<Case>,
+    /// Walks of the path tracer on slabs.
+    pub slab_walks: &'static [u64],
     /// How often each picture is rendered, at least once.
     pub repeats: u32,
     /// Folder of the truths.
@@ -149,7 +151,7 @@ pub fn study<M: Measure>(request: &Request, renderer: &mut M, watcher: &impl Wat
     }
     let scenes = prepared.iter().map(|scene| gather(scene, request.repeats, &ledger)).collect();
     watcher.begins("slabs");
-    Ok(Study { provenance: request.provenance.clone(), scenes, slabs: slab_results(), left_out })
+    Ok(Study { provenance: request.provenance.clone(), scenes, slabs: slab_results(request.slab_walks), left_out })
 }
 
 fn prepare(request: &Request, watcher: &impl Watcher) -> Result<(Vec<Prepared>, Vec<LeftOut>), ReportError> {

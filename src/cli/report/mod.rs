@@ -76,7 +76,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let repeats = arguments.repeats.unwrap_or(if arguments.quick { 1 } else { 5 });
     let (ledger, program) = (arguments.out.join("measured.jsonl"), machine::program()?);
-    let request = Request { cases, repeats, cache, ledger, program, provenance };
+    let slab_walks: &[u64] = if arguments.quick { &[1_000, 10_000] } else { &[1_000, 10_000, 100_000, 1_000_000] };
+    let request = Request { cases, slab_walks, repeats, cache, ledger, program, provenance };
     let progress = Progress::new(pictures.clone())?;
     let study = report::study(&request, &mut Device(renderer), &progress).map_err(failure)?;
     progress.finish();
