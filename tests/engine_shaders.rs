@@ -36,7 +36,7 @@ fn glslc(language: Language) -> Vec<u32> {
     let mut command = Command::new("glslc");
     command.args(match language {
         Language::Hlsl => ["-x", "hlsl", "-fentry-point=main", "--target-env=vulkan1.1"].as_slice(),
-        _ => &["-x", "glsl", "--target-env=vulkan1.3"],
+        _ => &["-x", "glsl", "--target-env=vulkan1.1"],
     });
     let output = command.args(["-O", "-fshader-stage=compute", "-o"]).arg(&binary).arg(&text).output();
     let output = output.expect("glslc, which scripts/setup.sh installs");

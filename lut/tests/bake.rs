@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use small_air::{SMALL, earth};
 use welkin_lut::bake::{Air, AirError, BakeSettings, Baked, Directions};
 use welkin_lut::phase::TabulatedPhase;
-use welkin_lut::{Medium, PhaseFunction, Planet};
+use welkin_lut::{DensityProfile, Medium, PhaseFunction, Planet};
 
 #[test]
 fn optical_depth_straight_up_is_the_column_of_all_constituents() {
@@ -105,6 +105,10 @@ fn air_that_shaders_cannot_read_is_refused_with_what_to_do() {
     let table = TabulatedPhase::from_points(&[(-1.0, 0.7), (0.0, 0.5), (1.0, 1.0)]);
     constituents.truncate(1);
     constituents[0].phase = PhaseFunction::Tabulated(std::sync::Arc::new(table.unwrap()));
-    let tabulated = Air::new(&planet, &Medium { constituents }).unwrap_err();
+    let tabulated = Air::new(&planet, &Medium { constituents: constituents.clone() }).unwrap_err();
     assert!(tabulated.to_string().contains("closed forms"), "{tabulated}");
+    constituents[0] = earth().scatterers()[0].clone();
+    constituents[0].profile = DensityProfile::Layer { bottom_m: 1000.0, top_m: 2000.0 };
+    let layer = Air::new(&planet, &Medium { constituents }).unwrap_err();
+    assert!(layer.to_string().contains("exponential or tent"), "{layer}");
 }

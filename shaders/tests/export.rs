@@ -69,8 +69,11 @@ fn glslc(folder: &Path, name: &str, text: &str, arguments: &[&str]) -> Result<()
 /// The arguments of a function as its definition lists them.
 fn arguments(text: &str, function: &str) -> String {
     let definition = |line: &&str| line.contains(&format!(" {function}(")) && !line.ends_with(';');
-    let start = text.lines().find(|line| definition(line) && !line.starts_with([' ', '/'])).unwrap();
-    start.split_once('(').unwrap().1.to_owned()
+    let mut lines = text.lines().skip_while(|line| !definition(line) || line.starts_with([' ', '/']));
+    let first = lines.next().unwrap().split_once('(').unwrap().1;
+    // Metal's stand on lines of their own.
+    let others = lines.take_while(|line| !first.contains('{') && !line.contains('{'));
+    [first].into_iter().chain(others).collect()
 }
 
 #[test]

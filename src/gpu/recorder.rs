@@ -313,7 +313,11 @@ impl Commands {
                 let layout = pipeline.0.layout;
                 device.cmd_bind_descriptor_sets(commands, bind_point, layout, 0, &descriptors.sets, &[]);
             }
-            device.cmd_dispatch_base(commands, base_x, base_y, base_z, x, y, z);
+            match [base_x, base_y, base_z] {
+                // Validation layers of 2023 look at this one only.
+                [0, 0, 0] => device.cmd_dispatch(commands, x, y, z),
+                _ => device.cmd_dispatch_base(commands, base_x, base_y, base_z, x, y, z),
+            }
         }
     }
 

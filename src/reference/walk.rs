@@ -188,7 +188,7 @@ impl<'a> Walker<'a> {
         let local = self.local(at, Source::Air, &mut density);
         let vertex = Vertex::Medium(local, rate);
         state.reference = sum(spectrum::product(state.weight, local.scattering())) / rate;
-        if state.reference > 0.0 {
+        if state.reference > 0.0 && sum(state.weight) > NOTHING {
             self.next_event(&state, at, &vertex, lights, tally);
             self.turn(&mut state, at, &vertex, tally);
             self.density = density;
@@ -367,6 +367,10 @@ impl<'a> Walker<'a> {
         true
     }
 }
+
+/// Below this a walk ends before it begins: the products of weights that a double can hardly hold are zero, and what they
+/// are shares of is 0/0. Matter of a hundred optical depths leaves 1e-44.
+const NOTHING: f64 = 1e-200;
 
 /// How much each constituent scatters, over the bands as the walk weighs them.
 fn importance(local: &Local, weight: Bands) -> impl Iterator<Item = f64> {

@@ -1,6 +1,6 @@
 //! The window: flying through a sky, with a panel for everything that makes it.
 //!
-//! The sky is computed by a thread of its own ([`sky`]), which leaves pictures on the device; the window shows the last one
+//! The sky is computed by a thread of its own (`sky.rs`), which leaves pictures on the device; the window shows the last one
 //! that is done with the panel on top, whenever either changes, and never waits for the sky.
 
 mod app;

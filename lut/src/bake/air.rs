@@ -29,6 +29,11 @@ pub enum AirError {
         "constituent '{0}' has a tabulated phase function; shaders evaluate closed forms only, so choose one of them"
     )]
     TabulatedPhase(String),
+    /// A constituent has sharp bounds, at which tables would blur its optical depth.
+    #[error(
+        "constituent '{0}' is a layer with sharp bounds, which tables would blur; choose an exponential or tent profile"
+    )]
+    Layer(String),
     /// Nothing scatters.
     #[error("no constituent scatters in any band; there is no sky to tabulate")]
     NothingScatters,
@@ -47,6 +52,9 @@ impl Air {
         medium.validate()?;
         let weakens = |c: &&Constituent| c.extinction_per_m().iter().any(|&c| c > 0.0);
         let mut constituents: Vec<_> = medium.constituents.iter().filter(weakens).cloned().collect();
+        if let Some(layer) = constituents.iter().find(|c| matches!(c.profile, DensityProfile::Layer { .. })) {
+            return Err(AirError::Layer(layer.name.clone()));
+        }
         constituents.sort_by_key(|c| (!c.scatters(), profile_rank(&c.profile)));
         let scatterers = constituents.iter().filter(|c| c.scatters());
         if let Some(tabulated) = scatterers.clone().find(|c| matches!(c.phase, PhaseFunction::Tabulated(_))) {

@@ -101,12 +101,21 @@ fn with_own_names(function: &str, text: &str, global: &BTreeSet<&str>) -> String
         let base = word.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
         // naga has used it elsewhere, so it is no word of the language.
         let known = words(text).any(|other| other == base);
-        let free = !global.contains(base) && !global.contains(word) && !words(&own).any(|other| other == base);
+        let free = !global.contains(base) && !global.contains(word) && !stands_alone(&own, base);
         if known && free {
             own = replace_words(&own, word, base);
         }
     }
     own
+}
+
+/// Whether a word is there as a name of its own, not as a member's.
+fn stands_alone(text: &str, word: &str) -> bool {
+    text.match_indices(word).any(|(at, _)| {
+        let is_word = |c: char| c.is_alphanumeric() || c == '_';
+        let (before, after) = (&text[..at], &text[at + word.len()..]);
+        !before.ends_with(|c| is_word(c) || c == '.') && !after.starts_with(is_word)
+    })
 }
 
 /// The function whose definition a line of any C-like language starts.

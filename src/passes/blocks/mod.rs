@@ -41,7 +41,12 @@ mod tests {
     use welkin_shaders::{Shader, compile};
 
     fn shader(pass: &str) -> Shader {
-        let scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/noon.toml")).unwrap();
+        shader_of("noon", pass)
+    }
+
+    fn shader_of(scene: &str, pass: &str) -> Shader {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.toml"));
+        let scene = Scene::read(&path).unwrap();
         let facts = Facts::new(&scene, Settings::of(Quality::Low), Orders::All, Outputs::default()).unwrap();
         compile(pass, &definitions(&facts)).unwrap()
     }
@@ -100,7 +105,7 @@ mod tests {
 
     #[test]
     fn blocks_of_clouds_lie_in_memory_as_the_shaders_declare_them() {
-        let clouds = shader("clouds");
+        let clouds = shader_of("clouds/fair-cumulus", "clouds");
         assert_layout!(clouds, "CloudTerm", CloudTermBlock, [attenuation, lobes]);
         assert_eq!(size(&clouds, "CloudTerm"), size_of::<CloudTermBlock>());
         assert_layout!(clouds, "CloudMatter", CloudMatterBlock, [albedo, backward, similarity]);

@@ -95,11 +95,11 @@ impl FromStr for FileFormat {
 mod tests {
     use super::*;
 
-    /// Every texel holds its own place, so that any transposition or flip shows.
+    /// Every texel holds its own place, so that any transposition or flip shows; whole numbers, which half floats hold.
     fn places(size: [u32; 3]) -> Table {
         let [width, height, depth] = size;
         let texels = (0..depth).flat_map(|z| (0..height).flat_map(move |y| (0..width).map(move |x| [x, y, z])));
-        Table::new(size, texels.map(|place| place.map(|i| f64::from(i) - 0.5)).collect())
+        Table::new(size, texels.map(|place| place.map(|i| 1.0 - f64::from(i))).collect())
     }
 
     #[test]
