@@ -10,8 +10,10 @@
 // with the distance, and that is the sky's, exactly, where the ray ends. Optical depth is kept alike, in a table of its
 // own with more rows: relative to that of the whole ray at constant density.
 //
-// Where the planet's shadow lies across a ray, light that was scattered once begins, or stops, at its edge. Its slices
-// therefore divide the lit part of the ray alone, and what they hold is over the lit share of the way too.
+// Where a ray starts in the planet's shadow, light that was scattered once begins at its edge. Its slices therefore divide
+// the lit part of the ray alone, and what they hold is over the lit share of the way too. A ray that enters the shadow
+// later needs no such care: light has faded before it, and where the edge lies, if at all, depends on the direction too
+// steeply for froxels to hold what is relative to it.
 //
 // Definitions: AIR (there is any), LIT, MULTIPLE_SCATTERING, EMISSION; see welkin::sky.
 
@@ -81,13 +83,6 @@ fn optical_depth_uv(direction: SkyDirection, slice: f32) -> vec2<f32> {
     );
 }
 
-// Optical depth of a view ray up to a distance from where it enters the air.
-fn tau_before(direction: SkyDirection, ray: AirRay, along_m: f32) -> vec3<f32> {
-    let slice = mapping::slice_unit(along_m, mapping::slices_of(ray.length_m, ray.tangent_m));
-    let relative = textureSampleLevel(froxel_optical_depth, table_sampler, optical_depth_uv(direction, slice), 0.0).rgb;
-    return along_m / ray.length_m * view_optical_depth(direction) * relative;
-}
-
 fn reach_of(direction: SkyDirection, distance_m: f32) -> Reach {
     var reach = Reach(vec3<f32>(1.0), vec3<f32>(1.0), emission_radiance(direction), 1.0, 0.0, true);
 #ifdef AIR
@@ -115,39 +110,28 @@ fn reach_of(direction: SkyDirection, distance_m: f32) -> Reach {
     return reach;
 }
 
-// The lit part of a ray: what is left of it without the planet's shadow.
+// A ray without the part of the planet's shadow that it starts in.
 struct LitWay {
-    // Where the shadow lies on the ray, m; start >= end when nowhere.
-    shadow_m: vec2<f32>,
-    // Lit length of the whole ray, m.
-    total_m: f32,
+    // Where that shadow ends, m; 0 for a ray that starts in the light.
+    start_m: f32,
+    // Length of the rest, m.
+    rest_m: f32,
     slices: mapping::Slices,
-}
-
-// Lit length of a ray up to a distance, m.
-fn lit_length_m(distance_m: f32, shadow_m: vec2<f32>) -> f32 {
-    return distance_m - clamp(distance_m - shadow_m.x, 0.0, max(shadow_m.y - shadow_m.x, 0.0));
-}
-
-// The distance up to which so much of a ray is lit; at the shadow's edge that before it, where there is light before it.
-fn distance_of_lit_m(lit_m: f32, shadow_m: vec2<f32>) -> f32 {
-    let behind = shadow_m.x <= 0.0 || lit_m > shadow_m.x + 1e-6 * shadow_m.y;
-    return lit_m + select(0.0, shadow_m.y - shadow_m.x, shadow_m.x < shadow_m.y && behind);
 }
 
 fn lit_way(ray: AirRay) -> LitWay {
     let shadow_m = shadow_interval_m(
         atmosphere.radius_m, ray.altitude_m, ray.mu, ray.mu_s, ray.nu, ray.length_m
     );
+    let start_m = select(0.0, shadow_m.y, shadow_m.x <= 0.0 && shadow_m.y > 0.0);
     // A dark ray has a length yet, so that its neighbours have something to interpolate with.
-    let total_m = max(lit_length_m(ray.length_m, shadow_m), 1e-3);
-    let lowest_m = lit_length_m(clamp(ray.tangent_m, 0.0, ray.length_m), shadow_m);
-    return LitWay(shadow_m, total_m, mapping::slices_of(total_m, lowest_m));
+    let rest_m = max(ray.length_m - start_m, 1e-3);
+    return LitWay(start_m, rest_m, mapping::slices_of(rest_m, ray.tangent_m - start_m));
 }
 
 // How much more of the lit way than of the whole way lies before a point.
-fn lit_share(distance_m: f32, lit_m: f32, ray_length_m: f32, way: LitWay) -> f32 {
-    return lit_m / way.total_m * ray_length_m / max(distance_m, 1e-3);
+fn lit_share(distance_m: f32, ray_length_m: f32, way: LitWay) -> f32 {
+    return max(distance_m - way.start_m, 0.0) / way.rest_m * ray_length_m / max(distance_m, 1e-3);
 }
 
 // A layer of the sky view, over the length of air, as far as it comes from before a point.
@@ -162,16 +146,8 @@ fn sky_view_before(light: u32, layer: u32, direction: SkyDirection, reach: Reach
         let mu = cos(direction.zenith_rad);
         let ray = view_ray(observer.altitude_m, mu, light_mu_s(light), direction.nu, direction.below_horizon);
         let way = lit_way(ray);
-        let lit_m = lit_length_m(reach.along_m, way.shadow_m);
-        slice = mapping::slice_unit(lit_m, way.slices);
-        // In the shadow nothing is added to what comes from before it.
-        let in_shadow = reach.along_m > way.shadow_m.x && reach.along_m < way.shadow_m.y;
-        let counts_m = select(reach.along_m, way.shadow_m.x, in_shadow);
-        if in_shadow {
-            let whole_tau = view_optical_depth(direction);
-            share = opacity_ratio(tau_before(direction, ray, counts_m), whole_tau, counts_m / ray.length_m);
-        }
-        share *= lit_share(counts_m, lit_m, ray.length_m, way);
+        slice = mapping::slice_unit(max(reach.along_m - way.start_m, 0.0), way.slices);
+        share *= lit_share(reach.along_m, ray.length_m, way);
     }
     let unit = mapping::sky_view_to_unit(
         direction.zenith_rad, direction.azimuth_rad, direction.below_horizon, observer.view

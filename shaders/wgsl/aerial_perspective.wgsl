@@ -6,7 +6,7 @@
 //
 // Definitions: SLICE_COUNT.
 
-#import welkin::aerial::{distance_of_lit_m, lit_length_m, lit_share, lit_way, opacity_ratio, LitWay}
+#import welkin::aerial::{lit_share, lit_way, opacity_ratio, LitWay}
 #import welkin::atmosphere::{atmosphere, densities, extinction_at, SCATTERER_COUNT}
 #import welkin::mapping
 #import welkin::march::{
@@ -142,7 +142,7 @@ fn slice_distance_m(slice: u32, slices: mapping::Slices, way: LitWay, kind: u32)
     if kind == MULTIPLE {
         return along_m;
     }
-    return distance_of_lit_m(along_m, way.shadow_m);
+    return way.start_m + along_m;
 }
 
 // How much of the light before a slice one expects by its opacity alone, over that of the whole ray.
@@ -151,7 +151,7 @@ fn expected_share(tau: vec3<f32>, whole: vec3<f32>, at_m: f32, length_m: f32, wa
     if kind == MULTIPLE {
         return share;
     }
-    return share * lit_share(at_m, lit_length_m(at_m, way.shadow_m), length_m, way);
+    return share * lit_share(at_m, length_m, way);
 }
 
 // Marches along a ray and stores all slices of the layers of one kind.
