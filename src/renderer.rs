@@ -180,7 +180,7 @@ impl Renderer {
     }
 
     /// Radiance along rays, each from its own altitude under its own sun: the scene's first directional light, moved
-    /// there. Other directional lights are left out.
+    /// there. Other lights stay where the scene has them.
     ///
     /// # Errors
     /// As [`Renderer::render`].
@@ -198,7 +198,7 @@ impl Renderer {
         }
         let mut answers =
             vec![RayRadiance { radiance: [0.0; 3], transmittance: [0.0; 3], standard_error: [0.0; 3] }; rays.len()];
-        for group in groups_of_one_view(rays) {
+        for group in groups_of_one_view(rays, is_directional_alone(scene)) {
             let seen_from = scene_for_ray(scene, &rays[group[0]]);
             let ends = group.iter().any(|&index| rays[index].distance_m < f64::INFINITY);
             let facts = Facts::new(&seen_from, settings, orders, Outputs::default())?
@@ -282,27 +282,32 @@ impl Renderer {
 }
 
 /// Indices of rays that share altitude and sun, and so a sky-view table.
-fn groups_of_one_view(rays: &[Ray]) -> Vec<Vec<usize>> {
-    let mut groups: BTreeMap<(u64, u64), Vec<usize>> = BTreeMap::new();
+fn groups_of_one_view(rays: &[Ray], light_is_alone: bool) -> Vec<Vec<usize>> {
+    let mut groups: BTreeMap<[u64; 3], Vec<usize>> = BTreeMap::new();
     for (index, ray) in rays.iter().enumerate() {
-        groups.entry((ray.altitude_m.to_bits(), ray.sun_zenith_rad.to_bits())).or_default().push(index);
+        let azimuth_rad = if light_is_alone { 0.0 } else { ray.sun_azimuth_rad };
+        let view = [ray.altitude_m, ray.sun_zenith_rad, azimuth_rad].map(f64::to_bits);
+        groups.entry(view).or_default().push(index);
     }
     groups.into_values().collect()
+}
+
+/// Whether at most one directional light shines, so that its azimuth matters relative to a ray's alone.
+fn is_directional_alone(scene: &Scene) -> bool {
+    scene.lights.iter().filter(|light| matches!(light, Light::Directional(_))).count() <= 1
 }
 
 /// The scene with its camera and its first directional light where a ray has them.
 fn scene_for_ray(scene: &Scene, ray: &Ray) -> Scene {
     let mut scene = scene.clone();
     scene.camera.altitude_m = ray.altitude_m;
-    let first = scene.lights.iter().find_map(|light| match light {
-        Light::Directional(light) => Some(light.clone()),
+    let first = scene.lights.iter_mut().find_map(|light| match light {
+        Light::Directional(light) => Some(light),
         _ => None,
     });
-    scene.lights.retain(|light| !matches!(light, Light::Directional(_)));
-    if let Some(mut light) = first {
+    if let Some(light) = first {
         light.direction.elevation_rad = std::f64::consts::FRAC_PI_2 - ray.sun_zenith_rad;
         light.direction.azimuth_rad = ray.sun_azimuth_rad;
-        scene.lights.push(Light::Directional(light));
     }
     scene
 }

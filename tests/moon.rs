@@ -6,6 +6,8 @@ use std::path::Path;
 
 use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{Outputs, Quality, Settings};
+use welkin::probe::{Orders, Ray};
+use welkin::reference::{self, Effort};
 use welkin::renderer::Renderer;
 use welkin::scene::{DirectionalLight, Light, Scene};
 
@@ -147,4 +149,36 @@ fn by_day_the_moon_is_drawn_but_lights_no_sky_and_by_night_the_sun_is_left_out()
     let (night, reason) = render(&scene(&lights(-40.0)));
     assert!(reason.contains("sun stands 40.0° down"), "{reason}");
     assert!(night.radiance[0].iter().all(|&radiance| radiance > 0.0 && radiance < 1e-5), "{:?}", night.radiance[0]);
+}
+
+#[test]
+fn moonlight_along_single_rays_is_what_the_path_tracer_finds() {
+    let _alone = common::alone();
+    let text = "preset = \"hillaire2020\"\n[sun]\nelevation_deg = -40\nazimuth_deg = 20\n\
+                [moon]\nelevation_deg = 30\nazimuth_deg = 160\nphase_angle_deg = 60";
+    let scene = Scene::parse(text, Path::new("moonlight.toml")).unwrap();
+    let ray = |zenith_deg: f64, azimuth_deg: f64| Ray {
+        altitude_m: 2.0,
+        view_zenith_rad: zenith_deg.to_radians(),
+        view_azimuth_rad: azimuth_deg.to_radians(),
+        sun_zenith_rad: 130_f64.to_radians(),
+        sun_azimuth_rad: 20_f64.to_radians(),
+        distance_m: f64::INFINITY,
+    };
+    let rays = [ray(40.0, 150.0), ray(70.0, 250.0), ray(85.0, 20.0), ray(20.0, 340.0), ray(120.0, 90.0)];
+    let truth = reference::probe(&scene, &rays, Orders::All, Effort::Walks(2048), 5);
+    let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap();
+    let found = renderer.probe(&scene, Settings::of(Quality::Low), &rays, Orders::All).unwrap();
+    let pairs = found.iter().zip(&truth);
+    let ratios = pairs.flat_map(|(found, truth)| (0..3).map(|band| found.radiance[band] / truth.radiance[band]));
+    let mean = ratios.sum::<f64>() / (3 * rays.len()) as f64;
+    let errors = truth.iter().map(|truth| truth.standard_error[1] / truth.radiance[1]);
+    // Bands share walks; rays do not.
+    let standard_error = errors.map(|error| error.powi(2)).sum::<f64>().sqrt() / rays.len() as f64;
+    // What `low` promises in the median by day.
+    let bound = 0.015 + 3.0 * standard_error;
+    println!("{mean} within {bound}");
+    assert!((mean - 1.0).abs() < bound, "{mean}");
+    // Negative control: a tenth more moonlight.
+    assert!((1.1 * mean - 1.0).abs() > bound);
 }

@@ -33,11 +33,12 @@ pub struct ProbeAnswerBlock {
 }
 
 impl ProbeRayBlock {
-    fn new(ray: &Ray, mapping: &SkyViewMapping) -> Self {
-        let turn_rad = (ray.view_azimuth_rad - ray.sun_azimuth_rad).rem_euclid(TAU);
+    /// `sun_azimuth_rad` is that of the scene's light, which the ray is turned with.
+    fn new(ray: &Ray, sun_azimuth_rad: f64, mapping: &SkyViewMapping) -> Self {
+        let azimuth_rad = ray.view_azimuth_rad - ray.sun_azimuth_rad + sun_azimuth_rad;
         Self {
             zenith_rad: ray.view_zenith_rad as f32,
-            azimuth_rad: (PI - (turn_rad - PI).abs()) as f32,
+            azimuth_rad: (PI - (PI - azimuth_rad).rem_euclid(TAU)) as f32,
             // Decided in f64: at the horizon f32 would take some rays for the other half.
             below_horizon: u32::from(mapping.half(ray.view_zenith_rad) == SkyHalf::Ground),
             distance_m: ray.distance_m.min(FARTHEST_M) as f32,
@@ -45,9 +46,11 @@ impl ProbeRayBlock {
     }
 }
 
-/// Uploads rays that are all seen from the scene's camera altitude under the scene's light.
+/// Uploads rays that are all seen from the scene's camera altitude under the scene's lights, whose first directional one
+/// stands where the first ray has it. Where there is no other, rays may have it at other azimuths.
 pub fn upload(resources: &mut Resources, rays: &[Ray], mapping: &SkyViewMapping) -> Result<(), RenderError> {
-    let blocks: Vec<_> = rays.iter().map(|ray| ProbeRayBlock::new(ray, mapping)).collect();
+    let sun_azimuth_rad = rays.first().map_or(0.0, |ray| ray.sun_azimuth_rad);
+    let blocks: Vec<_> = rays.iter().map(|ray| ProbeRayBlock::new(ray, sun_azimuth_rad, mapping)).collect();
     resources.fill_buffer("rays", &blocks)?;
     resources.fill_buffer("answers", &vec![ProbeAnswerBlock::zeroed(); rays.len()])?;
     Ok(())

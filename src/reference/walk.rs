@@ -188,7 +188,7 @@ impl<'a> Walker<'a> {
         let local = self.local(at, Source::Air, &mut density);
         let vertex = Vertex::Medium(local, rate);
         state.reference = sum(spectrum::product(state.weight, local.scattering())) / rate;
-        if state.reference > 0.0 && sum(state.weight) > NOTHING {
+        if state.reference > 0.0 {
             self.next_event(&state, at, &vertex, lights, tally);
             self.turn(&mut state, at, &vertex, tally);
             self.density = density;
@@ -368,13 +368,57 @@ impl<'a> Walker<'a> {
     }
 }
 
-/// Below this a walk ends before it begins: the products of weights that a double can hardly hold are zero, and what they
-/// are shares of is 0/0. Matter of a hundred optical depths leaves 1e-44.
-const NOTHING: f64 = 1e-200;
-
-/// How much each constituent scatters, over the bands as the walk weighs them.
+/// How much each constituent scatters, over the bands as the walk weighs them, relative to the sum of the weights: a
+/// weight may be so small that a product with it is zero, and what the products are shares of is not to be 0/0.
 fn importance(local: &Local, weight: Bands) -> impl Iterator<Item = f64> {
+    let whole = sum(weight);
+    let share = weight.map(|w| w / whole);
     local.matter.iter().zip(local.density).map(move |(matter, density)| {
-        density * (0..BAND_COUNT).map(|j| weight[j] * matter.scattering_per_m[j]).sum::<f64>()
+        density * (0..BAND_COUNT).map(|j| share[j] * matter.scattering_per_m[j]).sum::<f64>()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
+
+    use super::super::light::Emitter;
+    use super::super::shape::Shape;
+    use super::*;
+
+    #[test]
+    fn a_walk_of_the_smallest_weight_that_a_double_holds_brings_home_a_number() {
+        let (scattering_per_m, height_m, scale_height_m) = (1.125, 5546.0, 8000.0);
+        let matter = Constituent {
+            name: "thick".into(),
+            scattering_per_m: [scattering_per_m; 3],
+            absorption_per_m: [0.125; 3],
+            emission_per_m: [0.0; 3],
+            profile: DensityProfile::Exponential { scale_height_m },
+            phase: PhaseFunction::Isotropic,
+        };
+        let mut world = World::stratified(Shape::Plane { height_m: 1e5 }, [0.0; 3], &[matter]);
+        world.lights.push(Emitter::Beam { toward: DVec3::Z, irradiance: [1.0; 3] });
+        let (smallest, density) = (f64::from_bits(1), (-height_m / scale_height_m).exp());
+        // Control: this is the case in which one order of the factors leaves something and the other nothing.
+        assert!(smallest * (density * scattering_per_m) > 0.0 && smallest * scattering_per_m * density == 0.0);
+        let mut tally = Tally::default();
+        for batch in 0..64 {
+            let mut walker = Walker::new(&world, Draw::new(1, 0, batch));
+            walker.draw.start(0);
+            let at = DVec3::Z * height_m;
+            let state = State {
+                position: at,
+                direction: -DVec3::Z,
+                weight: [smallest; 3],
+                order: 0,
+                ground: false,
+                pdf_per_sr: None,
+                reach_m: f64::INFINITY,
+                reference: 1.0,
+            };
+            walker.start_in_medium(state, at, 1e-6, |_| true, &mut tally);
+        }
+        assert!(tally.total().iter().all(|radiance| radiance.is_finite()), "{tally:?}");
+    }
 }
