@@ -64,7 +64,7 @@ fn away_from_the_setting_sun_the_air_near_by_does_not_depend_on_where_the_ray_en
             .flat_map(|zenith_deg| [150.0, 170.0, 180.0].map(|azimuth_deg| view(zenith_deg, azimuth_deg)))
             .collect();
         let truth = reference::probe(&scene, &rays, Orders::Single, Effort::Walks(1), 0);
-        let found = renderer.probe(&scene, Settings::of(Quality::Medium), &rays, Orders::Single).unwrap();
+        let found = renderer.probe(&scene, Settings::of(Quality::High), &rays, Orders::Single).unwrap();
         let worst = |factor: f64| {
             let errors = found.iter().zip(&truth).flat_map(|(found, truth)| {
                 (0..3).map(move |band| (factor * found.radiance[band] / truth.radiance[band] - 1.0).abs())
@@ -72,10 +72,10 @@ fn away_from_the_setting_sun_the_air_near_by_does_not_depend_on_where_the_ray_en
             errors.fold(0.0, f64::max)
         };
         println!("{:.3}", worst(1.0));
-        // What docs/accuracy.md finds by day at `medium` at the 99th percentile.
-        assert!(worst(1.0) < 0.058);
+        // docs/accuracy.md finds 7.5 %, and found 90 % when shadows far away moved the slices.
+        assert!(worst(1.0) < 0.08);
         // Negative control: a tenth more light.
-        assert!(worst(1.1) > 0.058);
+        assert!(worst(1.1) > 0.08);
     });
 }
 
