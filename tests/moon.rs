@@ -154,9 +154,10 @@ fn by_day_the_moon_is_drawn_but_lights_no_sky_and_by_night_the_sun_is_left_out()
 #[test]
 fn moonlight_along_single_rays_is_what_the_path_tracer_finds() {
     let _alone = common::alone();
-    let text = "preset = \"hillaire2020\"\n[sun]\nelevation_deg = -40\nazimuth_deg = 20\n\
-                [moon]\nelevation_deg = 30\nazimuth_deg = 160\nphase_angle_deg = 60";
-    let scene = Scene::parse(text, Path::new("moonlight.toml")).unwrap();
+    let lights = "[sun]\nelevation_deg = -40\nazimuth_deg = 20\n\
+                  [moon]\nelevation_deg = 30\nazimuth_deg = 160\nphase_angle_deg = 60";
+    let text = format!("preset = \"hillaire2020\"\n{lights}\n{CAMERA}");
+    let scene = Scene::parse(&text, Path::new("moonlight.toml")).unwrap();
     let ray = |zenith_deg: f64, azimuth_deg: f64| Ray {
         altitude_m: 2.0,
         view_zenith_rad: zenith_deg.to_radians(),
