@@ -2,6 +2,7 @@
 
 mod bake;
 mod prices;
+mod sequence;
 mod spectral;
 mod targets;
 
@@ -14,11 +15,12 @@ use crate::gpu::{Clock, DeviceRequest, Gpu, Pace};
 use crate::passes::{
     self, CLOUDS, FRAME, Pass, Recording, RenderError, Resources, ShaderSources, TABLES, record_probe,
 };
-use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Settings, Surface, TableFormat};
+use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Sequence, Settings, Surface, TableFormat};
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Camera, Light, Scene};
 
 pub use prices::{Price, prices};
+use sequence::Before;
 pub use targets::Targets;
 
 /// Renders scenes on one device; what one frame has computed, the next reuses.
@@ -29,6 +31,9 @@ pub struct Renderer {
     /// Of other groups of wavelengths than the one at the front.
     histories: Vec<History>,
     group: usize,
+    /// Where the frame that is being rendered stands among others.
+    sequence: Option<Sequence>,
+    before: Option<Before>,
 }
 
 /// A frame with what it took.
@@ -101,6 +106,8 @@ impl Renderer {
             histories: Vec::new(),
             group: 0,
             foregrounds: 0,
+            sequence: None,
+            before: None,
         })
     }
 
@@ -127,8 +134,7 @@ impl Renderer {
     /// [`RenderError::Shader`] with the file and line of what does not compile; then the shaders stay as they are.
     pub fn take_shaders_from(&mut self, folder: &Path) -> Result<(), RenderError> {
         self.resources.set_shaders(ShaderSources::from_directory(folder)?)?;
-        self.history = History::default();
-        self.histories.clear();
+        self.forget();
         Ok(())
     }
 
@@ -136,6 +142,7 @@ impl Renderer {
     pub fn forget(&mut self) {
         self.history = History::default();
         self.histories.clear();
+        self.before = None;
     }
 
     /// Renders what the scene's camera sees.
@@ -168,7 +175,7 @@ impl Renderer {
         passes::upload_foreground(&mut self.resources, &scene.camera, foreground)?;
         self.foregrounds += 1;
         let surface = Some(Surface::Given(self.foregrounds));
-        self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?.with_surface(surface)?)
+        self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?.with_surface(surface))
     }
 
     fn render_frame(&mut self, facts: &Facts) -> Result<Rendered, RenderError> {
@@ -202,7 +209,7 @@ impl Renderer {
             let seen_from = scene_for_ray(scene, &rays[group[0]]);
             let ends = group.iter().any(|&index| rays[index].distance_m < f64::INFINITY);
             let facts = Facts::new(&seen_from, settings, orders, Outputs::default())?
-                .with_surface(ends.then_some(Surface::Rays))?;
+                .with_surface(ends.then_some(Surface::Rays));
             let group_rays: Vec<_> = group.iter().map(|&index| rays[index]).collect();
             passes::upload_rays(&mut self.resources, &group_rays, &facts.sky_view_mapping())?;
             let passes: Vec<_> = TABLES.iter().collect();
@@ -222,7 +229,10 @@ impl Renderer {
         passes: &[&Pass],
         and_then: impl FnOnce(&mut Recording) -> Result<(), RenderError>,
     ) -> Result<Timings, RenderError> {
-        let facts = &facts.clone().with_tables_up_to(self.resources.widest_tables);
+        if self.sequence.is_none() {
+            self.before = None;
+        }
+        let facts = &facts.clone().with_tables_up_to(self.resources.widest_tables).in_sequence(self.sequence);
         let declarations: Vec<_> = passes.iter().map(|pass| pass.declaration).collect();
         let plan = Plan::new(facts, &self.history, &declarations);
         self.release_what_nobody_writes(&plan, passes);

@@ -50,7 +50,8 @@ fn render(scenes: &[Scene], settings: Settings) -> Vec<Rendered> {
 }
 
 fn cloud_passes(plan: &Plan) -> Vec<(Decision, u64)> {
-    let ours = plan.passes.iter().filter(|pass| pass.name.starts_with("cloud"));
+    // Frames that stand alone reconstruct nothing.
+    let ours = plan.passes.iter().filter(|pass| pass.name.starts_with("cloud") && pass.name != "cloud_reconstruction");
     ours.map(|pass| (pass.decision, pass.bytes)).collect()
 }
 

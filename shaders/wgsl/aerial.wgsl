@@ -23,7 +23,8 @@
 #import welkin::march::{view_ray, AirRay}
 #import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
 #import welkin::sky::{
-    emission_radiance, length_m, sky_view, view_optical_depth, SkyDirection, LAYER_COUNT, MULTIPLE_LAYER, SINGLE_LAYER
+    emission_radiance, length_m, sky_view, view_optical_depth, Shares, SkyDirection, ALL, LAYER_COUNT, MULTIPLE_LAYER,
+    SINGLE_LAYER,
 }
 #import welkin::tables::{sample_exactly, table_sampler}
 
@@ -163,14 +164,20 @@ fn sky_view_before(light: u32, layer: u32, direction: SkyDirection, reach: Reach
 
 // Radiance that the air before a point sends to the observer, 1/sr: per unit irradiance of the light.
 fn air_radiance_before(light: u32, direction: SkyDirection, reach: Reach) -> vec3<f32> {
+    return air_radiance_before_of(light, direction, reach, ALL);
+}
+
+// The same of shares of its light.
+fn air_radiance_before_of(light: u32, direction: SkyDirection, reach: Reach, shares: Shares) -> vec3<f32> {
     var radiance = vec3<f32>(0.0);
 #ifdef LIT
-#ifdef MULTIPLE_SCATTERING
-    radiance = sky_view_before(light, MULTIPLE_LAYER, direction, reach);
-#endif
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
         radiance += phase_per_sr(c, direction.nu) * sky_view_before(light, SINGLE_LAYER + c, direction, reach);
     }
+    radiance *= shares.straight;
+#ifdef MULTIPLE_SCATTERING
+    radiance += shares.diffuse * sky_view_before(light, MULTIPLE_LAYER, direction, reach);
+#endif
     radiance *= length_m(direction);
 #endif
     return radiance;

@@ -8,16 +8,19 @@
 // light scattered per optical depth does not change along the ray. Clouds take from it where they stand before the first
 // light; what they scatter down adds to the air's diffuse light.
 //
-// Definitions: CAPTURE (also write distances); CLOUD_MAX_STEPS; CLOUD_STEP_M, the shortest step; CLOUD_STEP_PERMILLE, a step's share of the distance.
+// One pixel of every block of CLOUD_BLOCK x CLOUD_BLOCK is marched, another one each frame; the ray ends at a surface that
+// stands before the camera.
+//
+// Definitions: CLOUD_DISTANCE (also write distances); CLOUD_BLOCK; SURFACE; CLOUD_MAX_STEPS; CLOUD_STEP_M, the shortest step; CLOUD_STEP_PERMILLE, a step's share of the distance.
 
 #import welkin::atmosphere::{atmosphere, extinction_at}
 #import welkin::camera::view_direction
 #import welkin::cloud_field::{cloud_layers, layer_density, to_map, CLOUD_LAYER_COUNT}
+#import welkin::cloud_daylight::{clear_fluxes, daylight, diffuse_share, ClearFluxes}
+#import welkin::cloud_frame::cloud_frame
 #import welkin::cloud_noise::hash
 #import welkin::cloud_skip::empty_m
-#import welkin::cloud_source::{
-    clear_fluxes, daylight, diffuse_share, phases, step_radiance, ClearFluxes, Sample, PHASE_COUNT,
-}
+#import welkin::cloud_source::{phases, step_radiance, Sample, PHASE_COUNT}
 #import welkin::geometry
 #import welkin::observer::{observer, LIGHT_COUNT}
 
@@ -29,12 +32,18 @@
 @group(1) @binding(11) var cloud_air_image: texture_storage_2d<rgba32float, write>;
 @group(1) @binding(12) var cloud_diffuse_image: texture_storage_2d<rgba32float, write>;
 
-#ifdef CAPTURE
+#ifdef CLOUD_DISTANCE
 // Mean distance of the clouds, weighted with what they hide.
 @group(1) @binding(13) var cloud_distance_image: texture_storage_2d<r32float, write>;
 const INFINITY_BITS: u32 = 0x7f800000u;
 #endif
 
+#ifdef SURFACE
+// What stands before the camera: its distance, m, beside its light.
+@group(0) @binding(19) var surface_image: texture_2d<f32>;
+#endif
+
+const BLOCK: u32 = #{CLOUD_BLOCK}u;
 const MAX_STEPS: u32 = #{CLOUD_MAX_STEPS}u;
 const STEP_M: f32 = #{CLOUD_STEP_M}.0;
 const STEP_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
@@ -152,7 +161,7 @@ fn pass_air(sum: ptr<function, Sum>, ray: Ray, clear: ClearFluxes, from_m: f32, 
 }
 
 fn random(pixel: vec2<u32>) -> f32 {
-    return f32(hash(vec3<i32>(vec2<i32>(pixel), 0), 1u) >> 8u) / 16777216.0;
+    return fract(f32(hash(vec3<i32>(vec2<i32>(pixel), 0), 1u) >> 8u) / 16777216.0 + cloud_frame.jitter);
 }
 
 // One step through the layers at a point; returns whether there was any cloud.
@@ -214,13 +223,18 @@ fn skip_m(map: vec2<f32>, altitude: f32, within: f32) -> f32 {
 }
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
-    if any(pixel.xy >= textureDimensions(cloud_radiance_image)) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= textureDimensions(cloud_radiance_image)) {
         return;
     }
-    var ray = ray_of(view_direction(pixel.xy));
+    let pixel = BLOCK * id.xy + cloud_frame.first_pixel;
+    var ray = ray_of(view_direction(pixel));
+#ifdef SURFACE
+    // Without a surface it is never.
+    ray.end_m = min(ray.end_m, textureLoad(surface_image, pixel, 0).a);
+#endif
     var phase = phases(ray.direction);
-    let offset = random(pixel.xy);
+    let offset = random(pixel);
     let clear = clear_fluxes(cloud_layers[0].base_m, observer.lights[0].direction.z);
     var sum: Sum;
     var t_m = 0.0;
@@ -268,18 +282,19 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
     var ground = vec2<f32>(1.0);
     if ray.end_m < NEVER_M {
         pass_air(&sum, ray, clear, t_m, ray.end_m);
-        let day = daylight(to_map(atmosphere.radius_m, observer_position() + ray.direction * ray.end_m), 0.0);
+        let end = to_map(atmosphere.radius_m, observer_position() + ray.direction * ray.end_m);
+        let day = daylight(end, max(altitude_m(ray, ray.end_m), 0.0));
         ground = vec2<f32>(day.through, day.diffuse);
     }
     let transmittance = select(exp(-sum.clouds), 0.0, sum.clouds >= OPAQUE);
-#ifdef CAPTURE
+#ifdef CLOUD_DISTANCE
     // Where nothing is hidden there is no such distance.
     let hidden = 1.0 - transmittance;
     let mean_m = select(bitcast<f32>(INFINITY_BITS), sum.weighted_m / hidden, hidden > 1e-4);
-    textureStore(cloud_distance_image, pixel.xy, vec4<f32>(mean_m, 0.0, 0.0, 0.0));
+    textureStore(cloud_distance_image, id.xy, vec4<f32>(mean_m, 0.0, 0.0, 0.0));
 #endif
-    textureStore(cloud_radiance_image, pixel.xy, vec4<f32>(sum.radiance, transmittance));
+    textureStore(cloud_radiance_image, id.xy, vec4<f32>(sum.radiance, transmittance));
     let behind = transmittance * exp(-sum.air);
-    textureStore(cloud_air_image, pixel.xy, vec4<f32>(sum.beam + behind, ground.x));
-    textureStore(cloud_diffuse_image, pixel.xy, vec4<f32>(sum.diffuse + behind, ground.y));
+    textureStore(cloud_air_image, id.xy, vec4<f32>(sum.beam + behind, ground.x));
+    textureStore(cloud_diffuse_image, id.xy, vec4<f32>(sum.diffuse + behind, ground.y));
 }

@@ -1,9 +1,9 @@
 // Pass: linear radiance of every pixel: the air, the ground behind it, and the discs of the lights.
 //
 // Definitions: CAPTURE (also write transmittance and distance, for files and engines), CLOUDS, SURFACE
-// (something stands before the camera; never with CLOUDS).
+// (something stands before the camera).
 
-#import welkin::aerial::{air_radiance_before, reach_of}
+#import welkin::aerial::{air_radiance_before_of, reach_of}
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::camera::{camera, view_direction, pixel_angle_rad}
 #import welkin::march::view_ray
@@ -161,12 +161,14 @@ fn seen(pixel: vec2<u32>, view: vec3<f32>, half: HalfPixel) -> Seen {
 }
 
 #ifdef SURFACE
-// A surface through the air before it.
-fn seen_before(view: vec3<f32>, direction: HalfPixel, surface: vec4<f32>) -> Seen {
+// A surface through the air and the clouds before it.
+fn seen_before(pixel: vec2<u32>, view: vec3<f32>, direction: HalfPixel, surface: vec4<f32>) -> Seen {
     let reach = reach_of(relative_to_light(view, direction, 0u), surface.a);
-    var seen = Seen(reach.emission + reach.transmittance * surface.rgb, reach.transmittance);
+    let clouds = overlay(pixel, reach.transmittance);
+    let transmittance = clouds.transmittance * reach.transmittance;
+    var seen = Seen(clouds.radiance + clouds.transmittance * reach.emission + transmittance * surface.rgb, transmittance);
     for (var light = 0u; light < LIGHT_COUNT; light++) {
-        let radiance = air_radiance_before(light, relative_to_light(view, direction, light), reach);
+        let radiance = air_radiance_before_of(light, relative_to_light(view, direction, light), reach, clouds.air);
         seen.radiance += observer.lights[light].irradiance * radiance;
     }
     return seen;
@@ -187,7 +189,7 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
     let surface = textureLoad(surface_image, pixel.xy, 0);
     if surface.a < NO_SURFACE_M {
         half = HalfPixel(below_horizon, 1.0, zenith_rad);
-        pixel_sees = seen_before(view, half, surface);
+        pixel_sees = seen_before(pixel.xy, view, half, surface);
     } else {
         pixel_sees = seen(pixel.xy, view, half);
     }

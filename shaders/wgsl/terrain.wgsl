@@ -5,10 +5,16 @@
 // away, where a pixel holds whole hills, the field goes over into the smooth sphere.
 //
 // What a point sends is Lambertian: the lights through air and past other hills, with penumbras, and the diffuse light
-// of welkin::surface_light.
+// of welkin::surface_light. Clouds dim the first light, and what they scatter down of it comes from all of the sky.
+//
+// Definitions: CLOUDS.
 
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::camera::{view_direction, pixel_angle_rad}
+#ifdef CLOUDS
+#import welkin::cloud_daylight::daylight
+#import welkin::cloud_field::to_map
+#endif
 #import welkin::geometry
 #import welkin::height_field::{gradient_at, height_below, height_field, relief_share}
 #import welkin::observer::{observer, LIGHT_COUNT}
@@ -141,6 +147,22 @@ fn albedo_at(height_m: f32, slope: f32, relief: f32) -> vec3<f32> {
     return mix(atmosphere.ground_albedo, ground, relief);
 }
 
+// What clouds leave of the light on a point of the ground: of a beam straight and scattered, and of the sky's light.
+struct Left {
+    straight: f32,
+    scattered: f32,
+    diffuse: f32,
+}
+
+fn left_by_clouds(point: vec3<f32>, altitude_m: f32) -> Left {
+#ifdef CLOUDS
+    let day = daylight(to_map(atmosphere.radius_m, point), altitude_m);
+    return Left(day.straight, day.through - day.straight, day.diffuse);
+#else
+    return Left(1.0, 0.0, 1.0);
+#endif
+}
+
 // Radiance that a point of the ground sends, of all lights, W/m2/sr/nm.
 fn radiance_at(view_ray: Ray, view_z: f32, distance_m: f32, footprint_m: f32) -> vec3<f32> {
     let altitude_m = max(ray_altitude_m(view_ray, distance_m), 0.0);
@@ -153,6 +175,7 @@ fn radiance_at(view_ray: Ray, view_z: f32, distance_m: f32, footprint_m: f32) ->
     let normal = normalize(up - gradient.x * east - gradient.y * north);
     let relief = relief_share(footprint_m);
     let reflectance = albedo_at(altitude_m, length(gradient), relief) / PI;
+    let left = left_by_clouds(vec3<f32>(place, view_ray.altitude_m + distance_m * view_z), altitude_m);
     var radiance = vec3<f32>(0.0);
     for (var light = 0u; light < LIGHT_COUNT; light++) {
         let toward = observer.lights[light].direction;
@@ -160,7 +183,7 @@ fn radiance_at(view_ray: Ray, view_z: f32, distance_m: f32, footprint_m: f32) ->
         let mu = dot(up, normal);
         let sines = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 0.0));
         let cos_phi = clamp((dot(normal, toward) - mu * mu_s) / max(sines, 1e-6), -1.0, 1.0);
-        var irradiance = diffuse_irradiance(altitude_m, mu_s, mu, cos_phi);
+        var irradiance = left.diffuse * diffuse_irradiance(altitude_m, mu_s, mu, cos_phi);
         let cosine = dot(normal, toward);
         let radius_rad = max(observer.lights[light].angular_radius_rad, 1e-3);
         let beam = light_transmittance(altitude_m, mu_s, radius_rad);
@@ -168,8 +191,10 @@ fn radiance_at(view_ray: Ray, view_z: f32, distance_m: f32, footprint_m: f32) ->
             // A little above the ground, so that its own facets do not shade it.
             let raised_m = altitude_m + 0.25 * footprint_m + 0.01;
             let shadow_ray = Ray(place, raised_m, mu_s, toward.xy);
-            irradiance += cosine * beam * visibility(shadow_ray, radius_rad, footprint_m);
+            irradiance += left.straight * cosine * beam * visibility(shadow_ray, radius_rad, footprint_m);
         }
+        // Evenly from the half sphere above, of which a slope sees a part.
+        irradiance += left.scattered * max(mu_s, 0.0) * beam * 0.5 * (1.0 + mu);
         radiance += observer.lights[light].irradiance * reflectance * irradiance;
     }
     return radiance;

@@ -2,7 +2,7 @@
 
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need};
+use crate::plan::{Declaration, Facts, Fingerprint, Need, Surface};
 
 const NAME: &str = "clouds";
 
@@ -22,6 +22,7 @@ pub const PASS: Pass = Pass {
             "ordinates_sunlight",
             "optical_depth_table",
             "multiple_scattering_table",
+            "terrain_image",
         ],
         writes: &["cloud_radiance_image", "cloud_air_image", "cloud_diffuse_image", "cloud_distance_image"],
         inputs: |facts| {
@@ -34,19 +35,37 @@ pub const PASS: Pass = Pass {
                 &scene.clouds,
                 scene.time_s,
                 settings,
-                facts.outputs.capture,
+                facts.surface,
+                facts.keeps_cloud_distance(),
+                facts.sequence.filter(|_| facts.cloud_block() > 1),
             ))
         },
         bytes: |facts| {
-            let capture = if facts.outputs.capture { ImageFormat::R32Float.texel_bytes() } else { 0 };
-            shape(facts).texels() * (3 * ImageFormat::Rgba32Float.texel_bytes() + capture)
+            let distance = if facts.keeps_cloud_distance() { ImageFormat::R32Float.texel_bytes() } else { 0 };
+            marched_shape(facts).texels() * (3 * ImageFormat::Rgba32Float.texel_bytes() + distance)
         },
     },
     record,
 };
 
-fn shape(facts: &Facts) -> ImageShape {
+/// What is marched into: by the names of whole pictures, and of those of which a frame marches some pixels.
+const IMAGES: [[&str; 2]; 3] = [
+    ["cloud_radiance_image", "cloud_radiance_samples"],
+    ["cloud_air_image", "cloud_air_samples"],
+    ["cloud_diffuse_image", "cloud_diffuse_samples"],
+];
+const DISTANCE: [&str; 2] = ["cloud_distance_image", "cloud_distance_samples"];
+
+/// All pixels of the picture.
+pub(super) fn whole_shape(facts: &Facts) -> ImageShape {
     ImageShape::D2(facts.scene.camera.width, facts.scene.camera.height)
+}
+
+/// One pixel of each block.
+fn marched_shape(facts: &Facts) -> ImageShape {
+    let [width, height] = [facts.scene.camera.width, facts.scene.camera.height];
+    let block = facts.cloud_block();
+    ImageShape::D2(width.div_ceil(block), height.div_ceil(block))
 }
 
 /// Whether there are clouds: what all passes of clouds are asked.
@@ -72,12 +91,26 @@ pub(super) fn grid_shape(facts: &Facts, fields: u32) -> ImageShape {
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
-    let shape = shape(recording.facts);
-    recording.resources.image("cloud_radiance_image", shape, ImageFormat::Rgba32Float)?;
-    recording.resources.image("cloud_air_image", shape, ImageFormat::Rgba32Float)?;
-    recording.resources.image("cloud_diffuse_image", shape, ImageFormat::Rgba32Float)?;
-    if recording.facts.outputs.capture {
-        recording.resources.image("cloud_distance_image", shape, ImageFormat::R32Float)?;
+    let facts = recording.facts;
+    let shape = marched_shape(facts);
+    let is_whole = facts.cloud_block() == 1;
+    let name = |[image, samples]: [&'static str; 2]| if is_whole { image } else { samples };
+    let mut images = Vec::new();
+    for names in IMAGES {
+        images.push((names[0], recording.resources.image(name(names), shape, ImageFormat::Rgba32Float)?));
     }
-    recording.dispatch(NAME, &[], &[], Work::Invocations(shape.extent()))
+    if facts.keeps_cloud_distance() {
+        images.push((DISTANCE[0], recording.resources.image(name(DISTANCE), shape, ImageFormat::R32Float)?));
+    }
+    if is_whole {
+        IMAGES.iter().chain([&DISTANCE]).for_each(|[_, samples]| recording.resources.release(samples));
+    }
+    let surface = match facts.surface {
+        Some(Surface::Terrain) => recording.resources.existing_image("terrain_image").cloned(),
+        Some(Surface::Given(_)) => recording.resources.existing_image("foreground_image").cloned(),
+        Some(Surface::Rays) | None => None,
+    };
+    images.extend(surface.map(|surface| ("surface_image", surface)));
+    let bound: Vec<_> = images.iter().map(|(name, image)| (*name, image)).collect();
+    recording.dispatch(NAME, &[], &bound, Work::Invocations(shape.extent()))
 }

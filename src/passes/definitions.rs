@@ -53,6 +53,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
     let cloud_numbers = [
         ("CLOUD_LAYER_COUNT", facts.clouds.len() as u32),
         ("CLOUD_TERM_COUNT", cloud_term_count(facts)),
+        ("CLOUD_BLOCK", facts.cloud_block()),
         ("ORDINATES_LIGHT", ordinates::light(facts) as u32),
         ("CLOUD_NEAR_SAMPLES", clouds.near_samples),
         ("CLOUD_STEP_M", clouds.step_m),
@@ -72,6 +73,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("GROUND", facts.orders == Orders::All),
         ("MULTIPLE_SCATTERING", facts.has_multiple_scattering()),
         ("CLOUDS", !facts.clouds.is_empty()),
+        ("CLOUD_DISTANCE", facts.keeps_cloud_distance()),
         ("CLOUD_ORDINATES", facts.cloud_scattering().ordinate_groups() > 0),
         ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),
         ("SOURCE_FUNCTION", facts.treatment == Treatment::SourceFunction),

@@ -10,6 +10,7 @@ mod cloud_bounds;
 mod cloud_density;
 mod cloud_erosion;
 mod cloud_light;
+mod cloud_reconstruction;
 mod cloud_shape;
 mod cloud_weather;
 mod clouds;
@@ -73,8 +74,8 @@ pub const TABLES: [Pass; 12] = [
     aerial_perspective::PASS,
 ];
 
-/// Clouds: their noise, their light, and what each pixel sees of them, in order.
-pub const CLOUDS: [Pass; 9] = [
+/// Clouds: their noise and their light, in order.
+pub const CLOUDS: [Pass; 8] = [
     cloud_shape::PASS,
     cloud_erosion::PASS,
     cloud_weather::PASS,
@@ -83,11 +84,11 @@ pub const CLOUDS: [Pass; 9] = [
     cloud_light::PASS,
     ordinates::EXTINCTION,
     ordinates::LIGHT,
-    clouds::PASS,
 ];
 
 /// What makes a frame of them, in order.
-pub const FRAME: [Pass; 4] = [terrain::PASS, compose::PASS, colour::PASS, display::PASS];
+pub const FRAME: [Pass; 6] =
+    [terrain::PASS, clouds::PASS, cloud_reconstruction::PASS, compose::PASS, colour::PASS, display::PASS];
 
 /// Images of a frame, which are filled anew for every group of wavelengths or gather all of them.
 pub const SHARED_IMAGES: [&str; 7] = [

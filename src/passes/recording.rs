@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{
-    CameraBlock, ZONAL_COUNT, atmosphere_block, cloud_layers, cloud_matter, cloud_terms, cosine_nodes, emission_block,
+    CameraBlock, ZONAL_COUNT, atmosphere_block, cloud_frame_block, cloud_layers, cloud_matter, cloud_terms, cosine_nodes, emission_block,
     gauss_nodes, grid_nodes, height_field_block, legendre_moments, observer_block,
 };
 use super::{RenderError, Resources, definitions, ordinates};
@@ -58,6 +58,7 @@ impl<'a> Recording<'a> {
         }
         if !facts.clouds.is_empty() {
             resources.fill_buffer("cloud_layers", &cloud_layers(facts))?;
+            resources.fill_buffer("cloud_frame", &cloud_frame_block(facts))?;
             resources.fill_buffer("cloud_terms", &cloud_terms(facts))?;
             resources.fill_buffer("cloud_matter", &cloud_matter(facts))?;
         }

@@ -101,6 +101,12 @@ impl Resources {
         self.images.insert(name, image);
     }
 
+    /// Exchanges the images of two names; either may have none.
+    pub fn exchange(&mut self, a: &'static str, b: &'static str) {
+        let [of_a, of_b] = [a, b].map(|name| self.images.remove(name));
+        self.images.extend([(a, of_b), (b, of_a)].into_iter().filter_map(|(name, image)| Some((name, image?))));
+    }
+
     /// The image of a name, if a pass has left one.
     pub fn existing_image(&self, name: &str) -> Option<&GpuImage> {
         self.images.get(name)

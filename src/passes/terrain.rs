@@ -11,7 +11,7 @@ pub const PASS: Pass = Pass {
     declaration: Declaration {
         name: NAME,
         need,
-        reads: &["optical_depth_table", "multiple_scattering_table"],
+        reads: &["optical_depth_table", "multiple_scattering_table", "cloud_light_image"],
         writes: &["terrain_image"],
         inputs: |facts| {
             let scene = facts.scene;

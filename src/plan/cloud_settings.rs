@@ -61,6 +61,8 @@ pub struct CloudSettings {
     pub grid_levels: u32,
     /// Width of the innermost grid's cells, m.
     pub cell_m: u32,
+    /// Side of the blocks of pixels of which each frame of a sequence marches one, a power of two; 1 marches all.
+    pub block: u32,
 }
 
 impl CloudSettings {
@@ -79,6 +81,7 @@ impl CloudSettings {
             grid_slices: 12,
             grid_levels: 3,
             cell_m: 100,
+            block: 2,
         };
         match quality {
             Quality::Low => Self {
@@ -92,6 +95,7 @@ impl CloudSettings {
                 grid_size: 64,
                 grid_slices: 8,
                 cell_m: 150,
+                block: 4,
                 ..medium
             },
             Quality::Medium => medium,
@@ -114,6 +118,7 @@ impl CloudSettings {
                 grid_size: 128,
                 grid_slices: 24,
                 cell_m: 60,
+                block: 1,
                 ..medium
             },
         }

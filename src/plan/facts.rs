@@ -6,7 +6,7 @@ use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::disc::is_wide;
 use super::faint::{Reach, reach};
-use super::{CloudScattering, PlanError, Settings, Skipping, TableFormat, Treatment};
+use super::{CloudScattering, PlanError, Sequence, Settings, Skipping, TableFormat, Treatment};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, GroupColour, Light, Scene, WavelengthGroup};
 
@@ -120,6 +120,8 @@ pub struct Facts<'a> {
     pub viewpoint: Viewpoint,
     /// What stands before it besides the ground.
     pub surface: Option<Surface>,
+    /// Where this frame stands among others; none for one that stands alone.
+    pub sequence: Option<Sequence>,
 }
 
 impl<'a> Facts<'a> {
@@ -166,19 +168,33 @@ impl<'a> Facts<'a> {
                 _ => Viewpoint::InSpace,
             },
             surface: None,
+            sequence: None,
         };
-        facts.with_surface(scene.terrain.as_ref().map(|_| Surface::Terrain))
+        Ok(facts.with_surface(scene.terrain.as_ref().map(|_| Surface::Terrain)))
     }
 
     /// With something that stands before the camera.
-    ///
-    /// # Errors
-    /// [`PlanError::Unsupported`] among clouds.
-    pub fn with_surface(self, surface: Option<Surface>) -> Result<Self, PlanError> {
-        if surface.is_some() && !self.clouds.is_empty() {
-            return Err(PlanError::Unsupported { what: "clouds hang before and behind surfaces".to_owned() });
+    pub fn with_surface(self, surface: Option<Surface>) -> Self {
+        Self { surface, ..self }
+    }
+
+    /// As one of a sequence of frames.
+    pub fn in_sequence(self, sequence: Option<Sequence>) -> Self {
+        Self { sequence, ..self }
+    }
+
+    /// Side of the blocks of pixels of which one is marched through the clouds; 1 where all are. What the frame before has
+    /// seen past the edge of a hill cannot be followed: before surfaces all are.
+    pub fn cloud_block(&self) -> u32 {
+        match self.sequence {
+            Some(Sequence { before: Some(_), .. }) if self.surface.is_none() => self.settings.clouds.block,
+            _ => 1,
         }
-        Ok(Self { surface, ..self })
+    }
+
+    /// Whether distances of clouds are needed, by a file or by the next frame.
+    pub fn keeps_cloud_distance(&self) -> bool {
+        self.outputs.capture || self.cloud_block() > 1
     }
 
     /// With tables no wider than a device can interpolate.

@@ -9,6 +9,7 @@ mod faint;
 mod ladder;
 mod multiple_scattering;
 mod scene_traits;
+mod sequence;
 mod settings;
 mod skipping;
 
@@ -22,6 +23,7 @@ pub use ladder::{LadderStep, Rung};
 pub use multiple_scattering::{MultipleScattering, Treatment, error_in_shadow, expected_ringing};
 pub use scene_traits::{SceneKind, SceneTraits};
 use serde::Serialize;
+pub use sequence::{Moment, Sequence, follows, pixel_of_block};
 pub use settings::{Directions, Quality, Settings, SourceGrid, TableFormat};
 pub use skipping::Skipping;
 

@@ -7,6 +7,7 @@ use welkin::output::{DEPTH_CHANNELS, read_exr, read_exr_channel};
 use welkin::plan::Outputs;
 use welkin::scene::{Camera, Scene};
 
+use super::frames::Frames;
 use super::{Arguments, Rendered};
 use crate::cli::Failure;
 use crate::cli::backend::{failure, open_renderer};
@@ -29,6 +30,32 @@ pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<
         text: statistics.to_text(),
         json: statistics.to_json(),
     })
+}
+
+/// Renders frames one after the other and hands each over with its number; returns what all of them took.
+pub fn render_frames(
+    arguments: &Arguments,
+    scene: &Scene,
+    outputs: Outputs,
+    Frames(numbers): &Frames,
+    mut finish: impl FnMut(u32, &Scene, Rendered) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let accuracy = &arguments.accuracy;
+    let mut renderer = open_renderer(arguments.device.as_deref())?;
+    for number in numbers.clone() {
+        let scene = Frames::scene_at(scene, number, arguments.frame_rate);
+        let rendered = renderer.render_next(&scene, accuracy.settings(), outputs).map_err(failure)?;
+        let name = format!("{}, frame {number}", scene.name);
+        let statistics = Statistics::new(&name, accuracy.quality(), Some(renderer.gpu().info()), &rendered.timings);
+        let rendered = Rendered {
+            frame: rendered.frame,
+            picture: rendered.picture.unwrap_or_default(),
+            text: statistics.to_text(),
+            json: statistics.to_json(),
+        };
+        finish(number, &scene, rendered)?;
+    }
+    Ok(())
 }
 
 /// What stands before the camera, if the user names it.

@@ -1,5 +1,6 @@
 //! `welkin render`: what the scene's camera sees.
 
+mod frames;
 mod gpu;
 mod reference;
 
@@ -10,6 +11,8 @@ use welkin::frame::Frame;
 use welkin::output::{AtomicFile, write_exr, write_png};
 use welkin::plan::Outputs;
 use welkin::scene::Scene;
+
+use frames::{Frames, numbered};
 
 use super::accuracy::Accuracy;
 use super::backend::Backend;
@@ -33,6 +36,13 @@ pub struct Arguments {
     backend: Backend,
     #[command(flatten)]
     accuracy: Accuracy,
+    /// Render frames A to B - 1, each 1/frame-rate s after the one before: clouds drift, and of a frame's clouds only some
+    /// pixels are computed anew. A frame's number stands for # in the outputs' names, or before their endings; gpu backend
+    #[arg(long, value_name = "A..B", conflicts_with = "depth")]
+    frames: Option<Frames>,
+    /// Frames in a second of the scene's time
+    #[arg(long, value_name = "N", default_value = "24", requires = "frames", value_parser = positive)]
+    frame_rate: f64,
     /// The gpu backend's device, by a part of its name or its index
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
@@ -77,30 +87,71 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ("--quality", Backend::Gpu, arguments.accuracy.quality.is_some()),
         ("--multiple-scattering", Backend::Gpu, arguments.accuracy.multiple_scattering.is_some()),
         ("--device", Backend::Gpu, arguments.device.is_some()),
+        ("--frames", Backend::Gpu, arguments.frames.is_some()),
         ("--depth", Backend::Gpu, arguments.depth.is_some()),
         ("--samples", Backend::Reference, arguments.samples.is_some()),
     ])?;
     let scene = Scene::read_with(&arguments.scene, arguments.spectrum.request())?;
     let formats = arguments.output.iter().map(|path| format_of(path)).collect::<Result<Vec<_>, _>>()?;
+    let outputs = Outputs { capture: formats.contains(&Format::Exr), picture: formats.contains(&Format::Png) };
+    if let Some(frames) = &arguments.frames {
+        return run_frames(arguments, &scene, &formats, outputs, frames);
+    }
     // Opened first: a place that cannot be written is said before time is spent.
     let files = arguments.output.iter().map(|path| AtomicFile::create(path)).collect::<Result<Vec<_>, _>>()?;
     let json_file = arguments.json.as_deref().map(AtomicFile::create).transpose()?;
-    let outputs = Outputs { capture: formats.contains(&Format::Exr), picture: formats.contains(&Format::Png) };
     let rendered = match arguments.backend {
         Backend::Gpu => gpu::render(arguments, &scene, outputs)?,
         Backend::Reference => reference::render(arguments, &scene, outputs)?,
     };
-    for (file, format) in files.into_iter().zip(formats) {
-        let frame = &rendered.frame;
-        match format {
-            Format::Exr => write_exr(file, frame, &scene)?,
-            Format::Png => write_png(file, frame.width, frame.height, &rendered.picture)?,
-        }
-    }
+    write_pictures(files, &formats, &rendered, &scene)?;
     if let Some(file) = json_file {
         file.write_all(format!("{}\n", rendered.json).as_bytes())?;
     }
     Ok(stdout::print(&rendered.text)?)
+}
+
+/// Renders and writes frame after frame; what they took is one list in the JSON file.
+fn run_frames(
+    arguments: &Arguments,
+    scene: &Scene,
+    formats: &[Format],
+    outputs: Outputs,
+    frames: &Frames,
+) -> Result<(), Failure> {
+    let json_file = arguments.json.as_deref().map(AtomicFile::create).transpose()?;
+    let mut all = Vec::new();
+    gpu::render_frames(arguments, scene, outputs, frames, |number, scene, rendered| {
+        let paths = arguments.output.iter().map(|path| numbered(path, number));
+        let files = paths.map(|path| AtomicFile::create(&path)).collect::<Result<Vec<_>, _>>()?;
+        write_pictures(files, formats, &rendered, scene)?;
+        all.push(rendered.json);
+        Ok(stdout::print(&rendered.text)?)
+    })?;
+    match json_file {
+        Some(file) => Ok(file.write_all(format!("[\n{}\n]\n", all.join(",\n")).as_bytes())?),
+        None => Ok(()),
+    }
+}
+
+fn write_pictures(
+    files: Vec<AtomicFile>,
+    formats: &[Format],
+    rendered: &Rendered,
+    scene: &Scene,
+) -> Result<(), Failure> {
+    let frame = &rendered.frame;
+    for (file, format) in files.into_iter().zip(formats) {
+        match format {
+            Format::Exr => write_exr(file, frame, scene)?,
+            Format::Png => write_png(file, frame.width, frame.height, &rendered.picture)?,
+        }
+    }
+    Ok(())
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0).ok_or("it must be above 0".to_owned())
 }
 
 fn format_of(path: &Path) -> Result<Format, Failure> {

@@ -2,6 +2,7 @@
 
 mod atmosphere;
 mod camera;
+mod cloud_frame;
 mod clouds;
 mod emission;
 mod observer;
@@ -10,6 +11,7 @@ mod terrain;
 
 pub use atmosphere::{atmosphere_block, legendre_moments, lobe_count};
 pub use camera::CameraBlock;
+pub use cloud_frame::cloud_frame_block;
 pub use clouds::{cloud_layers, cloud_matter, cloud_term_count, cloud_terms};
 pub use emission::{ZONAL_COUNT, emission_block, emission_breakpoints_m};
 pub use observer::observer_block;
@@ -26,6 +28,7 @@ fn vec3(bands: Bands) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::atmosphere::{AtmosphereHeader, ConstituentBlock, PhaseLobeBlock};
+    use super::cloud_frame::CloudFrameHeader;
     use super::clouds::{CloudMatterBlock, CloudTermBlock};
     use super::emission::EmitterBlock;
     use super::observer::{DirectionalLightBlock, ObserverHeader, SkyViewRangeBlock};
@@ -138,6 +141,9 @@ mod tests {
             ]
         );
         assert_eq!(size(&clouds, "CloudLayer"), size_of::<[f32; 32]>());
+        let frame = offsets(&clouds, "CloudFrame");
+        assert_eq!(frame[5], ("half_height".to_owned(), offset_of!(CloudFrameHeader, half_height)));
+        assert_eq!(frame[7], ("altitude_m".to_owned(), offset_of!(CloudFrameHeader, altitude_m)));
     }
 
     #[test]
@@ -146,6 +152,8 @@ mod tests {
         let end = |name: &str| offsets(&compose, name).last().cloned().unwrap();
         assert_eq!(end("Observer"), ("lights".to_owned(), size_of::<ObserverHeader>()));
         assert_eq!(end("Atmosphere"), ("constituents".to_owned(), size_of::<AtmosphereHeader>()));
+        let drifts = offsets(&shader_of("clouds/fair-cumulus", "clouds"), "CloudFrame").last().cloned().unwrap();
+        assert_eq!(drifts, ("drift_m".to_owned(), size_of::<CloudFrameHeader>()));
         let octaves = offsets(&shader("terrain"), "HeightField").last().cloned().unwrap();
         assert_eq!(octaves, ("octaves".to_owned(), size_of::<HeightFieldHeader>()));
     }

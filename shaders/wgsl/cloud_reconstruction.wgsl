@@ -1,0 +1,168 @@
+// Pass: clouds of every pixel, from those that this frame has marched and from the frame before.
+//
+// A pixel that was not marched takes what the frame before shows of the same piece of cloud: the point at the clouds'
+// mean distance, carried back by the wind, as the camera saw it then. What it takes is held between the least and the most
+// of the nine samples around (Karis 2014), so that nothing stays that is no longer there. Where the frame before did not
+// look, samples are interpolated.
+//
+// Legend
+//   sample    a pixel that was marched: one of each block of CLOUD_BLOCK x CLOUD_BLOCK
+//   place     of a pixel or between pixels, from the picture's top left corner
+//
+// Definitions: CLOUD_BLOCK; CAPTURE (distances are asked for).
+
+#import welkin::camera::{camera, view_direction}
+#import welkin::cloud_field::{cloud_layers, CLOUD_LAYER_COUNT}
+#import welkin::cloud_frame::cloud_frame
+#import welkin::observer::observer
+
+@group(0) @binding(0) var cloud_radiance_samples: texture_2d<f32>;
+@group(0) @binding(1) var cloud_air_samples: texture_2d<f32>;
+@group(0) @binding(2) var cloud_diffuse_samples: texture_2d<f32>;
+@group(0) @binding(3) var cloud_distance_samples: texture_2d<f32>;
+@group(0) @binding(4) var cloud_radiance_history: texture_2d<f32>;
+@group(0) @binding(5) var cloud_air_history: texture_2d<f32>;
+@group(0) @binding(6) var cloud_diffuse_history: texture_2d<f32>;
+@group(0) @binding(7) var cloud_radiance_image: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(8) var cloud_air_image: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(9) var cloud_diffuse_image: texture_storage_2d<rgba32float, write>;
+#ifdef CAPTURE
+@group(0) @binding(11) var cloud_distance_image: texture_storage_2d<r32float, write>;
+#endif
+
+const BLOCK: i32 = #{CLOUD_BLOCK};
+// Share of a new sample in a pixel that was marched; the rest is what was there, which evens out the samples' noise.
+const NEW_SHARE: f32 = 0.7;
+// Where there is no cloud, the point that is followed is as good as infinitely far, m.
+const FAR_M: f32 = 1e7;
+
+// The three images of the clouds at a pixel.
+struct Texels {
+    radiance: vec4<f32>,
+    air: vec4<f32>,
+    diffuse: vec4<f32>,
+}
+
+fn mixed(a: Texels, b: Texels, share: f32) -> Texels {
+    return Texels(mix(a.radiance, b.radiance, share), mix(a.air, b.air, share), mix(a.diffuse, b.diffuse, share));
+}
+
+fn sample_at(index: vec2<i32>) -> Texels {
+    let i = clamp(index, vec2<i32>(0), vec2<i32>(textureDimensions(cloud_radiance_samples)) - 1);
+    return Texels(
+        textureLoad(cloud_radiance_samples, i, 0), textureLoad(cloud_air_samples, i, 0),
+        textureLoad(cloud_diffuse_samples, i, 0),
+    );
+}
+
+fn history_at(index: vec2<i32>) -> Texels {
+    let i = clamp(index, vec2<i32>(0), vec2<i32>(textureDimensions(cloud_radiance_history)) - 1);
+    return Texels(
+        textureLoad(cloud_radiance_history, i, 0), textureLoad(cloud_air_history, i, 0),
+        textureLoad(cloud_diffuse_history, i, 0),
+    );
+}
+
+// Between four pixels. Written out: not every device interpolates 32-bit floats.
+fn interpolated_history(place: vec2<f32>) -> Texels {
+    let low = floor(place - 0.5);
+    let share = place - 0.5 - low;
+    let i = vec2<i32>(low);
+    let upper = mixed(history_at(i), history_at(i + vec2<i32>(1, 0)), share.x);
+    let lower = mixed(history_at(i + vec2<i32>(0, 1)), history_at(i + vec2<i32>(1, 1)), share.x);
+    return mixed(upper, lower, share.y);
+}
+
+fn interpolated_samples(pixel: vec2<i32>) -> Texels {
+    let at = vec2<f32>(pixel - vec2<i32>(cloud_frame.first_pixel)) / f32(BLOCK);
+    let low = floor(at);
+    let share = at - low;
+    let i = vec2<i32>(low);
+    let upper = mixed(sample_at(i), sample_at(i + vec2<i32>(1, 0)), share.x);
+    let lower = mixed(sample_at(i + vec2<i32>(0, 1)), sample_at(i + vec2<i32>(1, 1)), share.x);
+    return mixed(upper, lower, share.y);
+}
+
+// What the samples around a pixel have in common.
+struct Around {
+    least: Texels,
+    most: Texels,
+    // Of the nearest clouds: their edge moves with what is in front.
+    distance_m: f32,
+}
+
+fn around(nearest: vec2<i32>) -> Around {
+    let first = sample_at(nearest);
+    var bounds = Around(first, first, FAR_M);
+    let last = vec2<i32>(textureDimensions(cloud_distance_samples)) - 1;
+    for (var k = 0; k < 9; k++) {
+        let index = nearest + vec2<i32>(k % 3 - 1, k / 3 - 1);
+        let sample = sample_at(index);
+        bounds.least.radiance = min(bounds.least.radiance, sample.radiance);
+        bounds.least.air = min(bounds.least.air, sample.air);
+        bounds.least.diffuse = min(bounds.least.diffuse, sample.diffuse);
+        bounds.most.radiance = max(bounds.most.radiance, sample.radiance);
+        bounds.most.air = max(bounds.most.air, sample.air);
+        bounds.most.diffuse = max(bounds.most.diffuse, sample.diffuse);
+        let distance_m = textureLoad(cloud_distance_samples, clamp(index, vec2<i32>(0), last), 0).x;
+        bounds.distance_m = min(bounds.distance_m, distance_m);
+    }
+    return bounds;
+}
+
+// How far wind has carried the clouds at an altitude since the frame before, m.
+fn drift_m(altitude_m: f32) -> vec2<f32> {
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        let up_m = altitude_m - cloud_layers[layer].base_m;
+        if up_m >= 0.0 && up_m <= cloud_layers[layer].thickness_m {
+            return cloud_frame.drift_m[layer];
+        }
+    }
+    return vec2<f32>(0.0);
+}
+
+// Where the frame before saw the clouds of a view direction; beside the picture where it did not.
+fn place_before(view: vec3<f32>, distance_m: f32) -> vec2<f32> {
+    let point = vec3<f32>(0.0, 0.0, observer.altitude_m) + view * distance_m;
+    let then = point - vec3<f32>(drift_m(point.z), cloud_frame.altitude_m);
+    let ahead = dot(then, cloud_frame.forward);
+    if ahead <= 0.0 {
+        return vec2<f32>(-1.0);
+    }
+    let x = dot(then, cloud_frame.right) / (ahead * cloud_frame.half_width);
+    let y = dot(then, cloud_frame.up) / (ahead * cloud_frame.half_height);
+    return 0.5 * (vec2<f32>(x, -y) + 1.0) * camera.size;
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= textureDimensions(cloud_radiance_image)) {
+        return;
+    }
+    let pixel = vec2<i32>(id.xy);
+    let from_first = vec2<f32>(pixel - vec2<i32>(cloud_frame.first_pixel)) / f32(BLOCK);
+    let nearest = vec2<i32>(floor(from_first + 0.5));
+    let bounds = around(nearest);
+    let place = place_before(view_direction(id.xy), bounds.distance_m);
+    let is_new = all(pixel == nearest * BLOCK + vec2<i32>(cloud_frame.first_pixel));
+    let was_seen = all(place >= vec2<f32>(0.0)) && all(place <= camera.size);
+    var texels: Texels;
+    if was_seen {
+        texels = interpolated_history(place);
+        texels.radiance = clamp(texels.radiance, bounds.least.radiance, bounds.most.radiance);
+        texels.air = clamp(texels.air, bounds.least.air, bounds.most.air);
+        texels.diffuse = clamp(texels.diffuse, bounds.least.diffuse, bounds.most.diffuse);
+        if is_new {
+            texels = mixed(texels, sample_at(nearest), NEW_SHARE);
+        }
+    } else {
+        texels = interpolated_samples(pixel);
+    }
+    textureStore(cloud_radiance_image, pixel, texels.radiance);
+    textureStore(cloud_air_image, pixel, texels.air);
+    textureStore(cloud_diffuse_image, pixel, texels.diffuse);
+#ifdef CAPTURE
+    let last = vec2<i32>(textureDimensions(cloud_distance_samples)) - 1;
+    textureStore(cloud_distance_image, pixel, textureLoad(cloud_distance_samples, clamp(nearest, vec2<i32>(0), last), 0));
+#endif
+}

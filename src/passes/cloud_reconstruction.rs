@@ -1,0 +1,61 @@
+//! Clouds of every pixel, where a frame of a sequence marches only some.
+
+use super::{Pass, Recording, RenderError, clouds};
+use crate::gpu::{ImageFormat, Work};
+use crate::plan::{Declaration, Facts, Fingerprint, Need};
+
+const NAME: &str = "cloud_reconstruction";
+
+/// What is reconstructed, by the names of the frame before and of this one.
+const IMAGES: [[&str; 2]; 3] = [
+    ["cloud_radiance_history", "cloud_radiance_image"],
+    ["cloud_air_history", "cloud_air_image"],
+    ["cloud_diffuse_history", "cloud_diffuse_image"],
+];
+
+/// The pass.
+pub const PASS: Pass = Pass {
+    declaration: Declaration {
+        name: NAME,
+        need,
+        reads: &["cloud_radiance_image", "cloud_air_image", "cloud_diffuse_image"],
+        writes: &[
+            "cloud_radiance_image",
+            "cloud_air_image",
+            "cloud_diffuse_image",
+            "cloud_distance_image",
+            "cloud_radiance_history",
+            "cloud_air_history",
+            "cloud_diffuse_history",
+        ],
+        inputs: |facts| Fingerprint::of(&facts.sequence),
+        bytes: |facts| {
+            let images = 2 * IMAGES.len() as u64 * ImageFormat::Rgba32Float.texel_bytes();
+            let distance = if facts.outputs.capture { ImageFormat::R32Float.texel_bytes() } else { 0 };
+            clouds::whole_shape(facts).texels() * (images + distance)
+        },
+    },
+    record,
+};
+
+fn need(facts: &Facts) -> Need {
+    match (clouds::need(facts), facts.cloud_block()) {
+        (Need::NotNeeded(reason), _) => Need::NotNeeded(reason),
+        (_, 1) => Need::NotNeeded("all pixels of the clouds are marched".to_owned()),
+        (_, block) => Need::Needed(format!("one pixel of {} is marched, the others are followed", block * block)),
+    }
+}
+
+fn record(recording: &mut Recording) -> Result<(), RenderError> {
+    let shape = clouds::whole_shape(recording.facts);
+    for [history, image] in IMAGES {
+        // The frame before becomes history, and what was history is written over.
+        recording.resources.exchange(history, image);
+        recording.resources.image(history, shape, ImageFormat::Rgba32Float)?;
+        recording.resources.image(image, shape, ImageFormat::Rgba32Float)?;
+    }
+    if recording.facts.outputs.capture {
+        recording.resources.image("cloud_distance_image", shape, ImageFormat::R32Float)?;
+    }
+    recording.dispatch(NAME, &[], &[], Work::Invocations(shape.extent()))
+}

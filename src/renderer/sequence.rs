@@ -1,0 +1,67 @@
+//! Frames that follow one another, of which each takes over what still holds of the clouds in the one before.
+
+use super::{Rendered, Renderer, Targets, Timings};
+use crate::gpu::NextUse;
+use crate::passes::RenderError;
+use crate::plan::{CloudSettings, Moment, Outputs, Sequence, Settings, follows};
+use crate::scene::Scene;
+
+/// The frame before.
+pub(super) struct Before {
+    scene: Scene,
+    clouds: CloudSettings,
+    index: u32,
+}
+
+impl Renderer {
+    /// As [`Renderer::render`], as the next frame of a sequence: of clouds it computes some pixels alone, as many as the
+    /// settings say, and follows the others from the frame before. After a cut (another scene, view or quality, and any
+    /// frame in between that is no part of the sequence) every pixel is computed, so that nothing stays from before.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_next(
+        &mut self,
+        scene: &Scene,
+        settings: Settings,
+        outputs: Outputs,
+    ) -> Result<Rendered, RenderError> {
+        self.next_frame(scene, settings, |renderer| renderer.render(scene, settings, outputs))
+    }
+
+    /// As [`Renderer::render_to`], as the next frame of a sequence.
+    ///
+    /// # Errors
+    /// As [`Renderer::render_to`].
+    pub fn render_next_to(
+        &mut self,
+        scene: &Scene,
+        settings: Settings,
+        targets: &Targets,
+        next: NextUse,
+    ) -> Result<Timings, RenderError> {
+        self.next_frame(scene, settings, |renderer| renderer.render_to(scene, settings, targets, next))
+    }
+
+    /// Renders a frame that may look at the one before. One that fails leaves nothing to look at.
+    fn next_frame<T>(
+        &mut self,
+        scene: &Scene,
+        settings: Settings,
+        render: impl FnOnce(&mut Self) -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
+        let sequence = match self.before.take() {
+            Some(before) if before.clouds == settings.clouds && follows(&before.scene, scene) => Sequence {
+                index: before.index + 1,
+                before: Some(Moment { camera: before.scene.camera, time_s: before.scene.time_s }),
+            },
+            _ => Sequence::CUT,
+        };
+        self.sequence = Some(sequence);
+        let rendered = render(self);
+        self.sequence = None;
+        let rendered = rendered?;
+        self.before = Some(Before { scene: scene.clone(), clouds: settings.clouds, index: sequence.index });
+        Ok(rendered)
+    }
+}
