@@ -1,7 +1,7 @@
 //! Clouds in real time against pictures of the path tracer; prints Markdown.
 //!
-//! For each `scenes/clouds/NAME.toml` of which there is a `DIR/NAME.exr`, made by
-//! `welkin reference` from that scene at any size:
+//! For each `scenes/clouds/NAME.toml` of which there is a `DIR/NAME.exr`, made by `welkin reference` from that scene at any
+//! size, or several `DIR/NAME-SEED.exr` of one size and as many walks, of which the mean is taken:
 //! `cargo run --release --example compare_clouds -- DIR [--quality NAME]... [--form NAME]... [--scene NAME]...`
 //!
 //! Pixels count as cloudy where clouds hide more than half of what is behind them, and as thin from 0.03 to 0.3. With
@@ -36,6 +36,9 @@ struct Arguments {
     /// Scenes to compare; all of them without.
     #[arg(long = "scene")]
     scenes: Vec<String>,
+    /// Shaders to take in place of the built-in ones.
+    #[arg(long)]
+    shaders: Option<PathBuf>,
     /// Where to write what was rendered.
     #[arg(long)]
     pictures: Option<PathBuf>,
@@ -56,18 +59,49 @@ fn cases(directory: &Path) -> Vec<Case> {
     paths.sort();
     let case = |path: &PathBuf| {
         let name = path.file_stem()?.to_str()?.to_owned();
-        let picture = directory.join(format!("{name}.exr"));
-        if !picture.exists() {
-            eprintln!("note: there is no '{}'", picture.display());
+        let pictures: Vec<Frame> = pictures_of(directory, &name)
+            .iter()
+            .map(|picture| read_exr(picture).unwrap_or_else(|error| panic!("{error}")))
+            .collect();
+        if pictures.is_empty() {
+            eprintln!("note: there is no picture of {name}");
             return None;
         }
-        let truth = read_exr(&picture).unwrap_or_else(|error| panic!("{error}"));
+        let truth = mean(&pictures);
         let mut scene = Scene::read(path).unwrap_or_else(|error| panic!("{error}"));
         (scene.camera.width, scene.camera.height) = (truth.width, truth.height);
         let opacity = opacity(&scene);
         Some(Case { name, scene, truth, opacity })
     };
     paths.iter().filter_map(case).collect()
+}
+
+/// Files of a scene's truth.
+fn pictures_of(directory: &Path, name: &str) -> Vec<PathBuf> {
+    let is_ours = |path: &PathBuf| {
+        let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+        let seed = stem.strip_prefix(name).map(|rest| rest.strip_prefix('-').unwrap_or(rest));
+        path.extension().is_some_and(|ending| ending == "exr")
+            && seed.is_some_and(|s| s.chars().all(|c| c.is_ascii_digit()))
+    };
+    directory.read_dir().unwrap().map(|entry| entry.unwrap().path()).filter(is_ours).collect()
+}
+
+/// Of independent pictures of one scene.
+fn mean(pictures: &[Frame]) -> Frame {
+    let count = pictures.len() as f32;
+    let mut mean = pictures[0].clone();
+    let of = |i: usize, band: usize| pictures.iter().map(move |picture| picture.radiance[i][band]);
+    let error = |i: usize, band: usize| {
+        let variance = |picture: &Frame| picture.standard_error.as_ref().map_or(0.0, |errors| errors[i][band].powi(2));
+        pictures.iter().map(variance).sum::<f32>().sqrt() / count
+    };
+    for i in 0..mean.radiance.len() {
+        mean.radiance[i] = [0, 1, 2].map(|band| of(i, band).sum::<f32>() / count);
+    }
+    let errors = (0..mean.radiance.len()).map(|i| [0, 1, 2].map(|band| error(i, band))).collect();
+    mean.standard_error = pictures[0].standard_error.is_some().then_some(errors);
+    mean
 }
 
 /// What the clouds alone hide along the ray through each pixel's centre.
@@ -148,6 +182,9 @@ fn main() {
     cases.retain(|case| arguments.scenes.is_empty() || arguments.scenes.contains(&case.name));
     let chosen = |form: &CloudScattering| arguments.forms.is_empty() || arguments.forms.contains(&format!("{form:?}"));
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
+    if let Some(folder) = &arguments.shaders {
+        renderer.take_shaders_from(folder).unwrap_or_else(|error| panic!("{error}"));
+    }
     let info = renderer.gpu().info();
     println!("Device: {} ({} {}).\n", info.name, info.driver, info.driver_version);
     println!(

@@ -5,6 +5,7 @@ mod common;
 use std::path::Path;
 
 use glam::DVec3;
+use welkin::foreground::{Depth, Foreground};
 use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{CloudScattering, CloudSettings, Decision, Outputs, Plan, Quality, Settings};
 use welkin::reference::{World, transport};
@@ -38,15 +39,20 @@ fn settings() -> Settings {
     Settings { clouds, ..Settings::of(Quality::Low) }
 }
 
-fn render(scenes: &[Scene], settings: Settings) -> Vec<Rendered> {
+/// Does something with a renderer that the validation layer watches.
+fn with_renderer<T>(work: impl FnOnce(&mut Renderer) -> T) -> T {
     let _alone = common::alone();
     let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
     let mut renderer = Renderer::new(&request).unwrap();
     let log = renderer.gpu().validation_log();
-    let rendered = scenes.iter().map(|scene| renderer.render(scene, settings, CAPTURE).unwrap()).collect();
+    let done = work(&mut renderer);
     drop(renderer);
     assert!(log.messages().is_empty(), "{:?}", log.messages());
-    rendered
+    done
+}
+
+fn render(scenes: &[Scene], settings: Settings) -> Vec<Rendered> {
+    with_renderer(|renderer| scenes.iter().map(|scene| renderer.render(scene, settings, CAPTURE).unwrap()).collect())
 }
 
 fn cloud_passes(plan: &Plan) -> Vec<(Decision, u64)> {
@@ -142,4 +148,90 @@ fn hard_cases_are_finite() {
         assert!(values.clone().all(|v| v.is_finite() && *v >= 0.0), "{:?}", scene.clouds);
         assert!(values.clone().any(|v| *v > 0.0));
     }
+}
+
+/// Root mean square of the difference of two pictures over the mean of the second, in green.
+fn difference(a: &Rendered, b: &Rendered) -> f64 {
+    let pairs = a.frame.radiance.iter().zip(&b.frame.radiance);
+    let (squares, sum) = pairs
+        .fold((0.0, 0.0), |(squares, sum), (a, b)| (squares + f64::from(a[1] - b[1]).powi(2), sum + f64::from(b[1])));
+    (squares * b.frame.radiance.len() as f64).sqrt() / sum
+}
+
+/// Frames of a camera that turns by an angle each time, rad, and then of one that looks the other way.
+fn turning(angle_rad: f64, count: u32) -> Vec<Scene> {
+    let mut scene = day("[[clouds]]\nkind = \"cumulus\"\nwind_m_per_s = [8, 3]\n");
+    scene.camera.width = 80;
+    let frame = |i: u32| {
+        let mut frame = scene.clone();
+        frame.camera.direction.azimuth_rad += f64::from(i) * angle_rad;
+        frame.time_s += if angle_rad > 0.0 { f64::from(i) / 24.0 } else { 0.0 };
+        frame
+    };
+    let mut behind = scene.clone();
+    behind.camera.direction.azimuth_rad += 2.5;
+    (0..count).map(frame).chain([behind]).collect()
+}
+
+#[test]
+fn frames_of_a_sequence_follow_the_clouds_and_a_cut_leaves_nothing_behind() {
+    let settings = settings();
+    assert_eq!(settings.clouds.block, 4, "a sixteenth of the pixels a frame");
+    for angle_rad in [0.0, 0.05] {
+        let scenes = turning(angle_rad, 5);
+        let alone = render(&scenes, settings);
+        let next: Vec<_> = with_renderer(|renderer| {
+            scenes.iter().map(|scene| renderer.render_next(scene, settings, CAPTURE).unwrap()).collect()
+        });
+        let decision = |frame: usize| next[frame].timings.plan.decision("cloud_reconstruction").unwrap();
+        // The first frame and that after the cut are whole.
+        assert_eq!([0, 1, 4, 5].map(decision), [Decision::Skip, Decision::Run, Decision::Run, Decision::Skip]);
+        assert_eq!(next[5].frame.radiance, alone[5].frame.radiance);
+        let (error, moved) = (difference(&next[4], &alone[4]), difference(&alone[0], &alone[4]));
+        match angle_rad > 0.0 {
+            // A picture that stays where it was is off by all that has moved since the first frame.
+            true => assert!(error < 0.5 * moved, "{error} of {moved}"),
+            false => assert!(error < 1e-3, "{error}"),
+        }
+    }
+}
+
+#[test]
+fn before_near_surfaces_there_are_no_clouds_and_before_distant_ones_all() {
+    let cloudy = day("[[clouds]]\nkind = \"stratus\"\ncoverage = 1\n");
+    let clear = day("");
+    let camera = &cloudy.camera;
+    let at = |distance_m: f32| {
+        let distances = vec![distance_m; (camera.width * camera.height) as usize];
+        Foreground::new(camera, Depth::Distance, &distances, None).unwrap()
+    };
+    let middle = |rendered: &Rendered| rendered.frame.transmittance[(12 * camera.width + 20) as usize][1];
+    let [near, near_in_clear_air, far] = with_renderer(|renderer| {
+        let mut over = |scene: &Scene, distance_m: f32| {
+            middle(&renderer.render_over(scene, settings(), CAPTURE, &at(distance_m)).unwrap())
+        };
+        [over(&cloudy, 100.0), over(&clear, 100.0), over(&cloudy, 60_000.0)]
+    });
+    assert!((near - near_in_clear_air).abs() < 1e-6, "{near} {near_in_clear_air}");
+    assert!(far < 0.01, "{far}");
+}
+
+#[test]
+fn hills_lie_in_the_clouds_shade() {
+    let hills = "terrain = { height_m = 500, wavelength_m = 6000, albedo = 0.3 }\n";
+    let looking_down = |clouds: &str| {
+        let mut scene = scene(&format!("{hills}sun = {{ elevation_deg = 35, azimuth_deg = 200 }}\n{clouds}"));
+        scene.camera.altitude_m = 900.0;
+        scene.camera.direction.elevation_rad = -0.9;
+        scene
+    };
+    let scenes = [looking_down(""), looking_down("[[clouds]]\nkind = \"stratus\"\nbase_m = 1500\ncoverage = 1\n")];
+    let frames = render(&scenes, settings());
+    let mean = |rendered: &Rendered| {
+        rendered.frame.radiance.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>()
+            / rendered.frame.radiance.len() as f64
+    };
+    let [clear, overcast] = [mean(&frames[0]), mean(&frames[1])];
+    // A sheet of optical depth 10 and more leaves between a twentieth and three fifths of the light.
+    assert!(overcast < 0.6 * clear && overcast > 0.05 * clear, "{clear} {overcast}");
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{
-    CameraBlock, ZONAL_COUNT, atmosphere_block, cloud_frame_block, cloud_layers, cloud_matter, cloud_terms, cosine_nodes, emission_block,
-    gauss_nodes, grid_nodes, height_field_block, legendre_moments, observer_block,
+    CameraBlock, ZONAL_COUNT, atmosphere_block, cloud_frame_block, cloud_layers, cloud_matter, cloud_terms,
+    cosine_nodes, emission_block, gauss_nodes, grid_nodes, height_field_block, legendre_moments, observer_block,
 };
 use super::{RenderError, Resources, definitions, ordinates};
 use crate::gpu::{Commands, GpuImage, Resource, Work};

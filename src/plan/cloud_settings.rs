@@ -69,7 +69,7 @@ impl CloudSettings {
     /// The preset of a quality.
     pub fn of(quality: Quality) -> Self {
         let medium = Self {
-            scattering: CloudScattering::Ordinates8,
+            scattering: CloudScattering::Ordinates16,
             sweeps: 24,
             ordinate_cell_m: 120,
             ordinate_cells: 64,
@@ -85,6 +85,7 @@ impl CloudSettings {
         };
         match quality {
             Quality::Low => Self {
+                scattering: CloudScattering::Ordinates8,
                 sweeps: 12,
                 ordinate_cell_m: 240,
                 ordinate_cells: 32,
@@ -99,17 +100,10 @@ impl CloudSettings {
                 ..medium
             },
             Quality::Medium => medium,
-            Quality::High => Self {
-                scattering: CloudScattering::Ordinates16,
-                sweeps: 32,
-                step_m: 10,
-                step_permille: 3,
-                max_steps: 640,
-                grid_slices: 16,
-                ..medium
-            },
+            Quality::High => {
+                Self { sweeps: 32, step_m: 10, step_permille: 3, max_steps: 640, grid_slices: 16, ..medium }
+            }
             Quality::Ultra => Self {
-                scattering: CloudScattering::Ordinates16,
                 sweeps: 48,
                 ordinate_cell_m: 60,
                 step_m: 5,

@@ -22,8 +22,8 @@ pub use facts::{ConstituentGroups, Facts, Outputs, SpectralPart, Surface, Viewpo
 pub use ladder::{LadderStep, Rung};
 pub use multiple_scattering::{MultipleScattering, Treatment, error_in_shadow, expected_ringing};
 pub use scene_traits::{SceneKind, SceneTraits};
-use serde::Serialize;
 pub use sequence::{Moment, Sequence, follows, pixel_of_block};
+use serde::Serialize;
 pub use settings::{Directions, Quality, Settings, SourceGrid, TableFormat};
 pub use skipping::Skipping;
 

@@ -197,7 +197,11 @@ impl Worker {
         let started = Instant::now();
         let image = self.image(view.scene.camera.width, view.scene.camera.height)?;
         let targets = Targets { picture: Some(image.clone()), ..Targets::default() };
-        let timings = self.renderer.render_to(&view.scene, view.settings, &targets, NextUse::Copy)?;
+        let timings = match view.may_stop {
+            // At rest every pixel is computed, however long that takes.
+            true => self.renderer.render_to(&view.scene, view.settings, &targets, NextUse::Copy)?,
+            false => self.renderer.render_next_to(&view.scene, view.settings, &targets, NextUse::Copy)?,
+        };
         Ok(Picture { image, timings, took: started.elapsed(), scale: view.scale })
     }
 
