@@ -36,6 +36,9 @@ struct Arguments {
     /// Scenes to compare; all of them without.
     #[arg(long = "scene")]
     scenes: Vec<String>,
+    /// Means over so many pixels a side are compared, of pictures as of truths: they have less noise.
+    #[arg(long, default_value_t = 1)]
+    block: u32,
     /// Shaders to take in place of the built-in ones.
     #[arg(long)]
     shaders: Option<PathBuf>,
@@ -51,6 +54,15 @@ struct Case {
     truth: Frame,
     /// Of the clouds, pixel by pixel.
     opacity: Vec<f64>,
+}
+
+impl Case {
+    /// Means over blocks.
+    fn opacity_of_blocks(&self, side: u32) -> Vec<f64> {
+        let mut frame = Frame::new(self.truth.width, self.truth.height);
+        frame.radiance = self.opacity.iter().map(|&opacity| [opacity as f32; 3]).collect();
+        in_blocks(&frame, side).radiance.iter().map(|pixel| f64::from(pixel[GREEN])).collect()
+    }
 }
 
 fn cases(directory: &Path) -> Vec<Case> {
@@ -120,6 +132,25 @@ fn opacity(scene: &Scene) -> Vec<f64> {
     (0..camera.width * camera.height).map(pixel).collect()
 }
 
+/// Means over blocks of pixels, with their standard errors.
+fn in_blocks(frame: &Frame, side: u32) -> Frame {
+    let mut means = Frame::new(frame.width / side, frame.height / side);
+    let errors = frame.standard_error.as_ref();
+    let mut mean_errors = Vec::new();
+    for i in 0..means.width * means.height {
+        let (x, y) = (i % means.width * side, i / means.width * side);
+        let pixels = (0..side * side).map(|k| ((y + k / side) * frame.width + x + k % side) as usize);
+        let count = (side * side) as f32;
+        means.radiance[i as usize] =
+            [0, 1, 2].map(|band| pixels.clone().map(|p| frame.radiance[p][band]).sum::<f32>() / count);
+        let variance =
+            |band: usize| pixels.clone().map(|p| errors.map_or(0.0, |errors| errors[p][band].powi(2))).sum::<f32>();
+        mean_errors.push([0, 1, 2].map(|band| variance(band).sqrt() / count));
+    }
+    means.standard_error = errors.map(|_| mean_errors);
+    means
+}
+
 /// How far a picture is from the truth over some of its pixels.
 struct Score {
     /// Root mean square of ln(ratio), the truth's own noise taken out.
@@ -132,11 +163,13 @@ struct Score {
 }
 
 impl Score {
-    fn new(case: &Case, found: &Frame, opacities: std::ops::Range<f64>) -> Self {
+    fn new(case: &Case, found: &Frame, side: u32, opacities: std::ops::Range<f64>) -> Self {
+        let (truth, found) = (in_blocks(&case.truth, side), in_blocks(found, side));
+        let opacity = case.opacity_of_blocks(side);
         let (mut squares, mut noise, mut variance, mut sums, mut pixels) = (0.0, 0.0, 0.0, [0.0; 2], 0);
-        for i in (0..found.radiance.len()).filter(|&i| opacities.contains(&case.opacity[i])) {
-            let (a, b) = (f64::from(found.radiance[i][GREEN]), f64::from(case.truth.radiance[i][GREEN]));
-            let error = case.truth.standard_error.as_ref().map_or(0.0, |errors| f64::from(errors[i][GREEN]));
+        for i in (0..found.radiance.len()).filter(|&i| opacities.contains(&opacity[i])) {
+            let (a, b) = (f64::from(found.radiance[i][GREEN]), f64::from(truth.radiance[i][GREEN]));
+            let error = truth.standard_error.as_ref().map_or(0.0, |errors| f64::from(errors[i][GREEN]));
             sums = [sums[0] + a, sums[1] + b];
             squares += (a.max(1e-9) / b.max(1e-9)).ln().powi(2);
             noise += (error / b.max(1e-9)).powi(2);
@@ -159,8 +192,9 @@ fn of_clouds(rendered: &Rendered) -> f64 {
     rendered.timings.milliseconds.iter().filter(|(name, _)| ours(name)).map(|(_, time)| time).sum()
 }
 
-fn print_row(case: &Case, quality: Quality, scattering: CloudScattering, rendered: &Rendered) {
-    let (cloudy, thin) = (Score::new(case, &rendered.frame, 0.5..1.1), Score::new(case, &rendered.frame, 0.03..0.3));
+fn print_row(case: &Case, side: u32, quality: Quality, scattering: CloudScattering, rendered: &Rendered) {
+    let score = |opacities| Score::new(case, &rendered.frame, side, opacities);
+    let (cloudy, thin) = (score(0.5..1.1), score(0.03..0.3));
     let flip = compare(&rendered.frame, &case.truth).map_or(f64::NAN, |comparison| comparison.mean_flip);
     let [energy, error] = cloudy.energy;
     println!(
@@ -199,7 +233,7 @@ fn main() {
                 let outputs = Outputs { capture: true, picture: false };
                 let rendered =
                     renderer.render(&case.scene, settings, outputs).unwrap_or_else(|error| panic!("{error}"));
-                print_row(case, quality, scattering, &rendered);
+                print_row(case, arguments.block, quality, scattering, &rendered);
                 if let Some(folder) = &arguments.pictures {
                     let path = folder.join(format!("{}-{quality}-{scattering:?}.exr", case.name));
                     let file = AtomicFile::create(&path).unwrap_or_else(|error| panic!("{error}"));
