@@ -8,7 +8,8 @@ struct CloudFrame {
     first_pixel: vec2<u32>,
     // Added to the place of samples in their steps; another one each time that a pixel comes round.
     jitter: f32,
-    padding: f32,
+    // 1 where camera, clouds and lights are those of the frame before, else 0.
+    still: f32,
     // The camera of the frame before, as in welkin::camera.
     forward: vec3<f32>,
     half_width: f32,

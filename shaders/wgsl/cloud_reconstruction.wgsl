@@ -1,9 +1,9 @@
 // Pass: clouds of every pixel, from those that this frame has marched and from the frame before.
 //
 // A pixel that was not marched takes what the frame before shows of the same piece of cloud: the point at the clouds'
-// mean distance, carried back by the wind, as the camera saw it then. What it takes is held between the least and the most
-// of the nine samples around (Karis 2014), so that nothing stays that is no longer there. Where the frame before did not
-// look, samples are interpolated.
+// mean distance, carried back by the wind, as the camera saw it then. Unless nothing has moved, what it takes is held
+// between the least and the most of the nine samples around (Karis 2014), so that nothing stays that is no longer there.
+// Where the frame before did not look, samples are interpolated.
 //
 // Legend
 //   sample    a pixel that was marched: one of each block of CLOUD_BLOCK x CLOUD_BLOCK
@@ -149,9 +149,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var texels: Texels;
     if was_seen {
         texels = interpolated_history(place);
-        texels.radiance = clamp(texels.radiance, bounds.least.radiance, bounds.most.radiance);
-        texels.air = clamp(texels.air, bounds.least.air, bounds.most.air);
-        texels.diffuse = clamp(texels.diffuse, bounds.least.diffuse, bounds.most.diffuse);
+        if cloud_frame.still == 0.0 {
+            texels.radiance = clamp(texels.radiance, bounds.least.radiance, bounds.most.radiance);
+            texels.air = clamp(texels.air, bounds.least.air, bounds.most.air);
+            texels.diffuse = clamp(texels.diffuse, bounds.least.diffuse, bounds.most.diffuse);
+        }
         if is_new {
             texels = mixed(texels, sample_at(nearest), NEW_SHARE);
         }

@@ -12,6 +12,8 @@ pub struct Sequence {
     pub index: u32,
     /// The frame before; none after a cut.
     pub before: Option<Moment>,
+    /// Whether nothing at all has changed since then.
+    pub is_still: bool,
 }
 
 /// How a frame saw the scene.
@@ -25,7 +27,7 @@ pub struct Moment {
 
 impl Sequence {
     /// The first frame after a cut.
-    pub const CUT: Self = Self { index: 0, before: None };
+    pub const CUT: Self = Self { index: 0, before: None, is_still: false };
 }
 
 /// Altitude that a camera may gain between two frames, m, and as a share of its own.

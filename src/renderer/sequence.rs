@@ -54,6 +54,7 @@ impl Renderer {
             Some(before) if before.clouds == settings.clouds && follows(&before.scene, scene) => Sequence {
                 index: before.index + 1,
                 before: Some(Moment { camera: before.scene.camera, time_s: before.scene.time_s }),
+                is_still: before.scene == *scene,
             },
             _ => Sequence::CUT,
         };

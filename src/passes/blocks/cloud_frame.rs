@@ -14,7 +14,7 @@ const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
 pub struct CloudFrameHeader {
     pub(super) first_pixel: [u32; 2],
     pub(super) jitter: f32,
-    pub(super) padding: f32,
+    pub(super) still: f32,
     pub(super) forward: [f32; 3],
     pub(super) half_width: f32,
     pub(super) right: [f32; 3],
@@ -33,7 +33,7 @@ pub fn cloud_frame_block(facts: &Facts) -> Vec<u8> {
     let header = CloudFrameHeader {
         first_pixel: pixel_of_block(block, index % (block * block)),
         jitter: (f64::from(index / (block * block)) * GOLDEN_RATIO).fract() as f32,
-        padding: 0.0,
+        still: if facts.sequence.is_some_and(|sequence| sequence.is_still) { 1.0 } else { 0.0 },
         forward: camera.forward,
         half_width: camera.half_width,
         right: camera.right,
