@@ -1,0 +1,144 @@
+//! What each optimisation of the clouds saves, as ratios within one run, and the memory of their volumes; prints Markdown.
+//!
+//! `cargo run --release --example cloud_costs -- [--quality NAME]... [--rounds N] [--width PIXELS]`
+//!
+//! A camera turns a little with each frame. Every round renders the frame in each way, one after the other, so that all of
+//! them meet the same load; medians over the rounds, of the passes `clouds` and `cloud_reconstruction`:
+//!
+//! - *followed*: as a frame of a sequence, over every pixel marched;
+//! - *nothing skipped*: empty space in the layers is marched through, over the same with skipping;
+//! - *light marched*: 32 points towards a light for every sample in place of the cached depths, over the same with them;
+//! - *light anew*: the passes that make cached light, once, over a frame in which every pixel is marched.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use clap::Parser;
+use welkin::gpu::{DeviceRequest, Gpu};
+use welkin::passes::ShaderSources;
+use welkin::plan::{CloudSettings, Decision, Outputs, Quality, Settings};
+use welkin::renderer::{Rendered, Renderer};
+use welkin::scene::Scene;
+
+#[derive(Parser)]
+struct Arguments {
+    /// Qualities to measure; all without.
+    #[arg(long = "quality")]
+    qualities: Vec<Quality>,
+    /// Frames of each way.
+    #[arg(long, default_value_t = 5)]
+    rounds: u32,
+    /// Pixels across.
+    #[arg(long, default_value_t = 1280)]
+    width: u32,
+    /// The scene.
+    #[arg(long, default_value = "scenes/clouds/fair-cumulus.toml")]
+    scene: String,
+}
+
+/// Steps enough for rays that skip nothing.
+const MANY_STEPS: u32 = 1 << 14;
+
+/// Shaders that skip no empty space.
+fn without_skipping() -> ShaderSources {
+    let text = include_str!("../shaders/wgsl/cloud_skip.wgsl");
+    let head = "altitude_m: f32) -> f32 {\n";
+    assert!(text.contains(head), "the skipping of empty space has changed");
+    let text = text.replace(head, &format!("{head}    if true {{ return 0.0; }}\n"));
+    ShaderSources::embedded().with("cloud_skip.wgsl", Cow::Owned(text))
+}
+
+/// One way to render.
+struct Way {
+    renderer: Renderer,
+    settings: Settings,
+    in_sequence: bool,
+    milliseconds: Vec<f64>,
+}
+
+impl Way {
+    fn new(quality: Quality, shaders: ShaderSources, clouds: CloudSettings, in_sequence: bool) -> Self {
+        let gpu = Gpu::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
+        Self {
+            renderer: Renderer::with_shaders(gpu, shaders).unwrap_or_else(|error| panic!("{error}")),
+            settings: Settings { clouds, ..Settings::of(quality) },
+            in_sequence,
+            milliseconds: Vec::new(),
+        }
+    }
+
+    fn render(&mut self, scene: &Scene) -> Rendered {
+        let outputs = Outputs::default();
+        let rendered = match self.in_sequence {
+            true => self.renderer.render_next(scene, self.settings, outputs),
+            false => self.renderer.render(scene, self.settings, outputs),
+        };
+        rendered.unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    fn median(&self) -> f64 {
+        let mut sorted = self.milliseconds.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted[sorted.len() / 2]
+    }
+}
+
+fn time(rendered: &Rendered, is_ours: impl Fn(&str) -> bool) -> f64 {
+    rendered.timings.milliseconds.iter().filter(|(name, _)| is_ours(name)).map(|(_, time)| time).sum()
+}
+
+fn of_pixels(name: &str) -> bool {
+    name == "clouds" || name == "cloud_reconstruction"
+}
+
+fn of_light(name: &str) -> bool {
+    name == "cloud_density" || name == "cloud_light" || name.starts_with("ordinates")
+}
+
+fn main() {
+    let arguments = Arguments::parse();
+    let mut scene = Scene::read(Path::new(&arguments.scene)).unwrap_or_else(|error| panic!("{error}"));
+    (scene.camera.width, scene.camera.height) = (arguments.width, arguments.width * 9 / 16);
+    println!("{}, {} x {} pixels\n", scene.name, scene.camera.width, scene.camera.height);
+    println!("| quality | every pixel, ms | followed | nothing skipped | light marched | light anew |");
+    println!("|---|---|---|---|---|---|");
+    let qualities = if arguments.qualities.is_empty() { &Quality::ALL[..] } else { &arguments.qualities };
+    let mut memory = Vec::new();
+    for &quality in qualities {
+        let whole = CloudSettings { max_steps: MANY_STEPS, ..CloudSettings::of(quality) };
+        let marched = CloudSettings { near_samples: 32, ..whole };
+        let embedded = ShaderSources::embedded;
+        let mut ways = [
+            Way::new(quality, embedded(), whole, false),
+            Way::new(quality, embedded(), whole, true),
+            Way::new(quality, without_skipping(), whole, false),
+            Way::new(quality, embedded(), marched, false),
+        ];
+        // The first frames make noise and light, and a sequence's is whole.
+        let first = ways.each_mut().map(|way| way.render(&scene));
+        let light_ms = time(&first[0], of_light);
+        for round in 1..=arguments.rounds {
+            let mut frame = scene.clone();
+            frame.camera.direction.azimuth_rad += 0.01 * f64::from(round);
+            for way in &mut ways {
+                let rendered = way.render(&frame);
+                way.milliseconds.push(time(&rendered, of_pixels));
+            }
+        }
+        let [every, followed, unskipped, marched] = ways.each_ref().map(Way::median);
+        println!(
+            "| {quality} | {every:.0} | {:.2} | {:.2} | {:.2} | {:.2} |",
+            followed / every,
+            unskipped / every,
+            marched / every,
+            light_ms / every
+        );
+        let sequence = ways[1].render(&scene).timings.plan;
+        let kept = sequence.passes.into_iter().filter(|pass| pass.decision != Decision::Skip);
+        memory.extend(
+            kept.filter(|pass| of_pixels(pass.name) || of_light(pass.name) || pass.name.starts_with("cloud_"))
+                .map(|pass| format!("| {quality} | {} | {:.1} |", pass.name, pass.bytes as f64 / f64::from(1 << 20))),
+        );
+    }
+    println!("\n| quality | pass | MiB |\n|---|---|---|\n{}", memory.join("\n"));
+}
