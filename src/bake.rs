@@ -86,7 +86,8 @@ fn left_out(scene: &Scene) -> Vec<String> {
         Light::Point(light) => format!("light '{}'", light.name),
         Light::Environment(_) => "the environment light".to_owned(),
     });
-    layers.chain(terrain).chain(glow).chain(lights).collect()
+    let volumes = scene.volumes.iter().filter(|volume| !volume.is_empty()).map(|volume| format!("'{}'", volume.name));
+    layers.chain(volumes).chain(terrain).chain(glow).chain(lights).collect()
 }
 
 /// How much the sky of a pack rings, relative to its own light, where haze scatters forward; see

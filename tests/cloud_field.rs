@@ -1,14 +1,19 @@
-//! The clouds' density is one field: made on the device it is the field that the reference sees.
+//! The density of clouds, fog and volumes is one field: made on the device it is the field that the reference sees.
 
 mod common;
 
 use std::sync::OnceLock;
 
 use welkin::gpu::{Gpu, GpuImage, ImageFormat, ImageShape, Resource, Work};
+use welkin::passes::blocks::{LocalLists, lamps, volume_blocks};
+use welkin::plan::{Facts, Outputs, Quality, Settings};
+use welkin::probe::Orders;
+use welkin::scene::Scene;
 use welkin_lut::cloud::{
     CURL_SIZE, CloudField, CloudKind, CloudLayer, CloudNoise, CloudParameters, EROSION_SIZE, SHAPE_SIZE, WEATHER_SIZE,
     to_map,
 };
+use welkin_lut::volume::{VolumeField, VolumeParameters};
 use welkin_shaders::{Definition, Definitions, Shader, Sources};
 
 const RADIUS_M: f64 = 6_371_000.0;
@@ -174,11 +179,104 @@ fn assert_same_density(gpu: &Gpu, tiles: &Tiles) {
     }
 }
 
+/// The density of the first volume at the same points.
+const VOLUME_PASS: &str = "
+#import welkin::cloud_field::to_map
+#import welkin::volume_field::{volume_density, Place}
+
+@group(0) @binding(0) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(1) var<storage, read_write> found: array<f32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < arrayLength(&points) {
+        let p = points[id.x];
+        found[id.x] = volume_density(0u, Place(p.xyz, p.w, to_map(6371000.0, p.xyz)));
+    }
+}
+";
+
+/// Two kinds of fog and two local volumes, each alone, with billows.
+const VOLUMES: [&str; 4] = [
+    "fog = [{ extinction_per_m = 1, profile.exponential.scale_height_m = 60, NOISE }]",
+    "fog = [{ extinction_per_m = 1, profile.layer = { top_m = 90, edge = 0.4 }, NOISE }]",
+    "volumes = [{ name = \"a\", shape = \"box\", centre_m = [9, 5, 30], size_m = [90, 70, 60], turn_deg = 33, edge = 0.3, absorption_per_m = 1, NOISE }]",
+    "volumes = [{ name = \"a\", shape = \"ellipsoid\", centre_m = [9, 5, 30], size_m = [90, 70, 60], absorption_per_m = 1, NOISE }]",
+];
+
+fn volumes_on_device(gpu: &Gpu, tiles: &Tiles, scene: &Scene, points: &[[f32; 4]]) -> Vec<f32> {
+    let facts = Facts::new(scene, Settings::of(Quality::Low), Orders::All, Outputs::default()).unwrap();
+    let sources = Sources::embedded().with("volume_density.wgsl", VOLUME_PASS);
+    let definitions = Definitions::from([
+        ("CLOUD_LAYER_COUNT".to_owned(), Definition::U32(0)),
+        ("CONSTITUENT_COUNT".to_owned(), Definition::U32(0)),
+        ("VOLUME_COUNT".to_owned(), Definition::U32(1)),
+        ("FOG_COUNT".to_owned(), Definition::U32(facts.fog_count())),
+        ("VOLUME_NOISE".to_owned(), Definition::Bool(true)),
+    ]);
+    let mut all = welkin::passes::definitions(&facts);
+    all.extend(definitions);
+    let pipeline = gpu.pipeline(&Shader::from_sources(&sources, "volume_density", &all).unwrap()).unwrap();
+    let blocks = volume_blocks(&facts, &LocalLists::new(&facts, &lamps(&facts)));
+    let volumes = gpu.storage_buffer_of("volumes", &blocks).unwrap();
+    let points = gpu.storage_buffer_of("points", points).unwrap();
+    let found = gpu.storage_buffer("found", points.bytes() / 4).unwrap();
+    let mut commands = gpu.record("volume density").unwrap();
+    let bound = [
+        ("points", Resource::Buffer(&points)),
+        ("found", Resource::Buffer(&found)),
+        ("volumes", Resource::Buffer(&volumes)),
+        ("cloud_shape_volume", Resource::Image(&tiles.shape)),
+        ("cloud_erosion_volume", Resource::Image(&tiles.erosion)),
+    ];
+    commands.dispatch(&pipeline, &bound, Work::Invocations([(points.bytes() / 16) as u32, 1, 1])).unwrap();
+    commands.submit_and_wait().unwrap();
+    gpu.read_buffer(&found).unwrap()
+}
+
+fn assert_same_volumes(gpu: &Gpu, tiles: &Tiles) {
+    const BOUND: f64 = 1.0 / 255.0;
+    let part = |i: usize, factor: f64| (i as f64 * factor).fract() as f32;
+    let points: Vec<[f32; 4]> = (0..20_000)
+        .map(|i| {
+            let up_m = 110.0 * part(i, 0.438_579_021) - 5.0;
+            [120.0 * part(i, 0.754_877_666) - 60.0, 120.0 * part(i, 0.569_840_291) - 60.0, up_m, up_m]
+        })
+        .collect();
+    for text in VOLUMES {
+        let noise = "noise = { size_m = 20, strength = 0.8, seed = 2, wind_m_per_s = [3, -1] }";
+        let rest = "preset = \"earth\"\ntime_s = 40\nsun = { elevation_deg = 9, azimuth_deg = 0 }\n\
+            camera = { altitude_m = 2, elevation_deg = 0, azimuth_deg = 0 }\n";
+        let scene = format!("{rest}{}", text.replace("NOISE", noise));
+        let scene = Scene::parse(&scene, "volumes.toml".as_ref()).unwrap();
+        let found = volumes_on_device(gpu, tiles, &scene, &points);
+        let differs = |parameters: VolumeParameters| {
+            let field = VolumeField::new(&scene.volumes[0], parameters);
+            let pairs = found.iter().zip(&points);
+            pairs.fold((0.0_f64, 0), |(worst, inside), (&found, p)| {
+                let [x, y, z, altitude_m] = p.map(f64::from);
+                let expected = field.density([x, y, z], to_map(RADIUS_M, [x, y, z]), altitude_m);
+                (worst.max((f64::from(found) - expected).abs()), inside + usize::from(expected > 0.0))
+            })
+        };
+        let parameters = VolumeParameters::new(&scene.volumes[0], scene.time_s);
+        let (worst, inside) = differs(parameters);
+        println!("{text}: worst difference {worst:.2e}, {inside} points inside");
+        assert!(inside > 2000, "{text}: hardly a point is inside");
+        assert!(worst <= BOUND, "{text}: {worst}");
+        // Negative control: a hundredth of a tile is noticed.
+        let mut moved = parameters;
+        moved.noise_offset[0] += 0.01;
+        assert!(differs(moved).0 > BOUND, "{text}: the comparison sees nothing");
+    }
+}
+
 #[test]
-fn clouds_on_the_device_are_the_hosts_in_every_texel_and_at_any_point() {
+fn densities_on_the_device_are_the_hosts_in_every_texel_and_at_any_point() {
     common::with_gpu(|gpu| {
         let tiles = Tiles::new(gpu);
         assert_same_noise(gpu, &tiles);
         assert_same_density(gpu, &tiles);
+        assert_same_volumes(gpu, &tiles);
     });
 }

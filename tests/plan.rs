@@ -7,7 +7,7 @@ use std::path::Path;
 use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{Decision, Outputs, Plan, Quality, Settings};
 use welkin::renderer::{Rendered, Renderer};
-use welkin::scene::{Light, PointLight, Scene};
+use welkin::scene::{EnvironmentLight, Light, Scene};
 
 const PICTURE: Outputs = Outputs { capture: true, picture: true };
 
@@ -21,10 +21,19 @@ fn plan(scene: &Scene) -> Plan {
     Renderer::plan(scene, Settings::of(Quality::Low), PICTURE).unwrap()
 }
 
-/// The passes of air that gives off light of its own, of what stands before the camera, and of more wavelengths
-/// than three.
-const OF_OTHER_SCENES: [&str; 6] =
-    ["emission_order", "view_emission", "aerial_optical_depth", "aerial_perspective", "terrain", "colour"];
+/// The passes of air that gives off light of its own, of what stands before the camera, of local media, and of more
+/// wavelengths than three.
+const OF_OTHER_SCENES: [&str; 9] = [
+    "emission_order",
+    "view_emission",
+    "aerial_optical_depth",
+    "aerial_perspective",
+    "volume_light",
+    "local_clusters",
+    "terrain",
+    "local_media",
+    "colour",
+];
 
 /// The passes of other treatments of multiply scattered light than that of the hazy noon; tests/treatment.rs has the rule.
 const OTHER_TREATMENTS: [&str; 3] = ["first_order", "higher_order", "isotropic_series"];
@@ -185,10 +194,9 @@ fn each_light_adds_its_own_sky() {
 #[test]
 fn what_the_renderer_cannot_do_is_refused_with_the_way_out() {
     let mut scene = noon();
-    let light = PointLight { name: "lamp".into(), position_m: glam::DVec3::Z, intensity: [1.0; 3] };
-    scene.lights.push(Light::Point(light));
+    scene.lights.push(Light::Environment(EnvironmentLight { radiance: [1.0; 3] }));
     let error = Renderer::plan(&scene, Settings::of(Quality::Low), PICTURE).unwrap_err().to_string();
-    assert!(error.contains("lamp") && error.contains("--backend reference"), "{error}");
+    assert!(error.contains("environment") && error.contains("--backend reference"), "{error}");
 }
 
 #[test]

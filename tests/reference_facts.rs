@@ -186,7 +186,7 @@ fn an_even_grid_scatters_like_an_even_filling() {
 fn order_one_of_the_walks_is_what_quadrature_finds() {
     let phase = PhaseFunction::HenyeyGreenstein { g: 0.6 };
     let mut lamp = grid_cube(6.0, 0.9, phase.clone(), patchy);
-    lamp.lights.push(Emitter::Point { position_m: DVec3::new(0.2, 1.6, 1.2), intensity: [1.0; 3] });
+    lamp.lights.push(Emitter::Point { position_m: DVec3::new(0.2, 1.6, 1.2), intensity: [1.0; 3], cone: None });
     let mut beam = grid_cube(6.0, 0.9, phase, patchy);
     sun(&mut beam);
     let (p, d) = through();

@@ -23,6 +23,7 @@ pub mod quadrature;
 pub mod sky_tables;
 pub mod spectrum;
 mod table;
+pub mod volume;
 
 pub use bands::{BAND_COUNT, BAND_NAMES, BAND_WAVELENGTHS_NM, Bands};
 pub use medium::{Constituent, Medium, MediumError};

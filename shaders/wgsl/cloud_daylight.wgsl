@@ -55,8 +55,8 @@ struct Daylight {
 
 // By two streams in the similar medium (Joseph, Wiscombe & Weinman 1976): of a beam with cosine mu
 // ((2/3 + mu) + (2/3 - mu) e^(-q tau)) / (4/3 + (1 - g) mu tau), of diffuse light 1 / (1 + 3/4 (1 - g) tau).
-fn daylight(map: vec2<f32>, altitude_m: f32) -> Daylight {
-    let toward = local_direction(map, observer.lights[0].direction);
+fn daylight_of(light: u32, map: vec2<f32>, altitude_m: f32) -> Daylight {
+    let toward = local_direction(map, observer.lights[light].direction);
     let mu = max(toward.z, 0.0);
     var day = Daylight(1.0, 1.0, 1.0);
     for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
@@ -67,7 +67,7 @@ fn daylight(map: vec2<f32>, altitude_m: f32) -> Daylight {
         // Below the base the light is followed up to it.
         let along_m = max(-up_m, 0.0) / max(toward.z, 0.02);
         let height = max(up_m, 0.0) / cloud_layers[layer].thickness_m;
-        let part = Part(0u, LIGHT_COUNT);
+        let part = Part(light, LIGHT_COUNT);
         let beam = grid_sample(cloud_light_image, table_sampler, part, layer, map + toward.xy * along_m, height).x;
         let above = grid_sample(cloud_light_image, table_sampler, part, layer, map, height).y;
         let matter = cloud_matter[layer];
@@ -78,6 +78,11 @@ fn daylight(map: vec2<f32>, altitude_m: f32) -> Daylight {
         day.diffuse = min(day.diffuse, 1.0 / (1.0 + 0.75 * matter.backward * above));
     }
     return day;
+}
+
+// Of the first light.
+fn daylight(map: vec2<f32>, altitude_m: f32) -> Daylight {
+    return daylight_of(0u, map, altitude_m);
 }
 
 // The first light's fluxes through a horizontal plane in clear air: its beam, the sky's light from above and what comes

@@ -1,7 +1,7 @@
 // Pass: linear radiance of every pixel: the air, the ground behind it, and the discs of the lights.
 //
-// Definitions: CAPTURE (also write transmittance and distance, for files and engines), CLOUDS, SURFACE
-// (something stands before the camera).
+// Definitions: CAPTURE (also write transmittance and distance, for files and engines), CLOUDS, LOCAL_MEDIA (clouds are
+// marched together with fog, volumes and local lights), SURFACE (something stands before the camera).
 
 #import welkin::aerial::{air_radiance_before_of, reach_of}
 #import welkin::atmosphere::{atmosphere, PI}
@@ -30,24 +30,39 @@ const INFINITY_BITS: u32 = 0x7f800000u;
 const NO_SURFACE_M: f32 = 1e30;
 #endif
 
-#ifdef CLOUDS
+#ifdef LOCAL_MEDIA
+@group(1) @binding(50) var media_radiance_image: texture_2d<f32>;
+@group(1) @binding(51) var media_transmittance_image: texture_2d<f32>;
+@group(1) @binding(52) var media_beam_image: texture_2d<f32>;
+@group(1) @binding(53) var media_diffuse_image: texture_2d<f32>;
+#else ifdef CLOUDS
 @group(1) @binding(10) var cloud_radiance_image: texture_2d<f32>;
 @group(1) @binding(11) var cloud_air_image: texture_2d<f32>;
 @group(1) @binding(12) var cloud_diffuse_image: texture_2d<f32>;
 #endif
 
-// What clouds do to a pixel: their own light, what they let through, and what they leave of the light of air and ground,
+// What clouds and local media do to a pixel: their own light, what they let through, and what they leave of the light of air and ground,
 // of what comes straight from the lights and of the rest.
 struct Overlay {
     radiance: vec3<f32>,
-    transmittance: f32,
+    transmittance: vec3<f32>,
     air: Shares,
     ground: Shares,
 }
 
 // `behind` is the transmittance of all of the air.
 fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
-#ifdef CLOUDS
+#ifdef LOCAL_MEDIA
+    let media = textureLoad(media_radiance_image, pixel, 0);
+    let through = textureLoad(media_transmittance_image, pixel, 0);
+    let left = through.rgb * behind;
+    let opacity = max(1.0 - behind, vec3<f32>(1e-6));
+    let shares = Shares(
+        max((textureLoad(media_beam_image, pixel, 0).rgb - left) / opacity, vec3<f32>(0.0)),
+        max((textureLoad(media_diffuse_image, pixel, 0).rgb - left) / opacity, vec3<f32>(0.0))
+    );
+    return Overlay(media.rgb, through.rgb, shares, Shares(vec3<f32>(media.a), vec3<f32>(through.a)));
+#else ifdef CLOUDS
     let clouds = textureLoad(cloud_radiance_image, pixel, 0);
     let beam = textureLoad(cloud_air_image, pixel, 0);
     let diffuse = textureLoad(cloud_diffuse_image, pixel, 0);
@@ -55,10 +70,10 @@ fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
     let air = Shares(
         max((beam.rgb - clouds.a * behind) / whole, vec3<f32>(0.0)), max((diffuse.rgb - clouds.a * behind) / whole, vec3<f32>(0.0))
     );
-    return Overlay(clouds.rgb, clouds.a, air, Shares(vec3<f32>(beam.a), vec3<f32>(diffuse.a)));
+    return Overlay(clouds.rgb, vec3<f32>(clouds.a), air, Shares(vec3<f32>(beam.a), vec3<f32>(diffuse.a)));
 #else
     let whole = Shares(vec3<f32>(1.0), vec3<f32>(1.0));
-    return Overlay(vec3<f32>(0.0), 1.0, whole, whole);
+    return Overlay(vec3<f32>(0.0), vec3<f32>(1.0), whole, whole);
 #endif
 }
 

@@ -5,9 +5,10 @@
 // away, where a pixel holds whole hills, the field goes over into the smooth sphere.
 //
 // What a point sends is Lambertian: the lights through air and past other hills, with penumbras, and the diffuse light
-// of welkin::surface_light. Clouds dim the first light, and what they scatter down of it comes from all of the sky.
+// of welkin::surface_light. Clouds dim the first light, and what they scatter down of it comes from all of the sky; fog dims both, and
+// local lights add theirs.
 //
-// Definitions: CLOUDS.
+// Definitions: CLOUDS, LOCAL_MEDIA.
 
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::camera::{view_direction, pixel_angle_rad}
@@ -19,6 +20,11 @@
 #import welkin::height_field::{gradient_at, height_below, height_field, relief_share}
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::surface_light::{diffuse_irradiance, light_transmittance}
+#ifdef LOCAL_MEDIA
+#import welkin::cluster::{cluster_of, slice_of}
+#import welkin::media_ground::{fog_share, lit_by_lamps}
+#import welkin::volume_field::place_of
+#endif
 
 @group(0) @binding(30) var terrain_image: texture_storage_2d<rgba32float, write>;
 
@@ -164,7 +170,7 @@ fn left_by_clouds(point: vec3<f32>, altitude_m: f32) -> Left {
 }
 
 // Radiance that a point of the ground sends, of all lights, W/m2/sr/nm.
-fn radiance_at(view_ray: Ray, view_z: f32, distance_m: f32, footprint_m: f32) -> vec3<f32> {
+fn radiance_at(pixel: vec2<u32>, view_ray: Ray, view_z: f32, distance_m: f32, footprint_m: f32) -> vec3<f32> {
     let altitude_m = max(ray_altitude_m(view_ray, distance_m), 0.0);
     let place = view_ray.start + distance_m * view_ray.direction;
     let up = normalize(vec3<f32>(place, atmosphere.radius_m + view_ray.altitude_m + distance_m * view_z));
@@ -197,6 +203,11 @@ fn radiance_at(view_ray: Ray, view_z: f32, distance_m: f32, footprint_m: f32) ->
         irradiance += left.scattered * max(mu_s, 0.0) * beam * 0.5 * (1.0 + mu);
         radiance += observer.lights[light].irradiance * reflectance * irradiance;
     }
+#ifdef LOCAL_MEDIA
+    let lit = place_of(vec3<f32>(place, view_ray.altitude_m + distance_m * view_z));
+    let lamps = lit_by_lamps(lit, normal, cluster_of(pixel, slice_of(distance_m)));
+    radiance = radiance * fog_share(lit, vec2<f32>(1.0)) + reflectance * lamps;
+#endif
     return radiance;
 }
 
@@ -213,7 +224,7 @@ fn main(@builtin(global_invocation_id) pixel: vec3<u32>) {
     var surface = vec4<f32>(0.0, 0.0, 0.0, NO_SURFACE_M);
     if distance_m < NO_SURFACE_M {
         let footprint_m = max(distance_m * pixel_rad, 0.02);
-        surface = vec4<f32>(radiance_at(ray, view.z, distance_m, footprint_m), distance_m);
+        surface = vec4<f32>(radiance_at(pixel.xy, ray, view.z, distance_m, footprint_m), distance_m);
     }
     textureStore(terrain_image, pixel.xy, surface);
 }

@@ -11,7 +11,7 @@ const NAME: &str = "cloud_erosion";
 pub const PASS: Pass = Pass {
     declaration: Declaration {
         name: NAME,
-        need: clouds::need,
+        need: clouds::noise_need,
         reads: &[],
         writes: &["cloud_erosion_volume"],
         inputs: |_| Fingerprint::of(&()),

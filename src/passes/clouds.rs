@@ -10,7 +10,7 @@ const NAME: &str = "clouds";
 pub const PASS: Pass = Pass {
     declaration: Declaration {
         name: NAME,
-        need,
+        need: need_alone,
         reads: &[
             "cloud_shape_volume",
             "cloud_erosion_volume",
@@ -66,6 +66,22 @@ fn marched_shape(facts: &Facts) -> ImageShape {
     let [width, height] = [facts.scene.camera.width, facts.scene.camera.height];
     let block = facts.cloud_block();
     ImageShape::D2(width.div_ceil(block), height.div_ceil(block))
+}
+
+/// Among fog, volumes and local lights all media are marched together.
+fn need_alone(facts: &Facts) -> Need {
+    match need(facts) {
+        Need::Needed(_) if facts.has_local_media() => Need::NotNeeded("marched together with local media".to_owned()),
+        need => need,
+    }
+}
+
+/// Whether anything is made from the clouds' noise: they themselves, or billows of fog and volumes.
+pub(super) fn noise_need(facts: &Facts) -> Need {
+    if facts.clouds.is_empty() && facts.has_volume_noise() {
+        return Need::Needed("billows of fog or volumes".to_owned());
+    }
+    need(facts)
 }
 
 /// Whether there are clouds: what all passes of clouds are asked.

@@ -23,6 +23,8 @@ pub const PASS: Pass = Pass {
             "froxel_optical_depth",
             "froxel_emission",
             "froxel_light",
+            "media_radiance_image",
+            "media_transmittance_image",
             "terrain_image",
         ],
         writes: &["radiance_image", "transmittance_image", "distance_image"],

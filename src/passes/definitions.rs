@@ -3,9 +3,11 @@
 use welkin_lut::cloud::CloudKind;
 use welkin_shaders::{Definition, Definitions};
 
-use super::blocks::{ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count};
-use super::ordinates;
-use crate::plan::{Facts, TableFormat, Treatment};
+use super::blocks::{
+    ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count, local_light_count, volume_term_count,
+};
+use super::{local_clusters, ordinates, volume_light};
+use crate::plan::{CloudScattering, Facts, Surface, TableFormat, Treatment};
 use crate::probe::Orders;
 
 /// Invocations of a workgroup that every Vulkan device takes.
@@ -64,6 +66,23 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("CLOUD_GRID_LEVELS", clouds.grid_levels),
         ("CLOUD_CELL_M", clouds.cell_m),
     ];
+    let (volumes, blocks) = (&settings.volumes, volume_light::blocks(facts));
+    let volume_numbers = [
+        ("VOLUME_COUNT", facts.volumes.len() as u32),
+        ("FOG_COUNT", facts.fog_count()),
+        ("LOCAL_LIGHT_COUNT", local_light_count(facts)),
+        ("VOLUME_TERM_COUNT", volume_term_count(facts)),
+        ("VOLUME_CELLS", blocks.cells),
+        ("VOLUME_COLUMNS", blocks.columns),
+        ("VOLUME_ROWS", blocks.rows),
+        ("FOG_LEVELS", volumes.fog_levels),
+        ("FOG_CELL_M", volumes.fog_cell_m),
+        ("CLUSTER_COLUMNS", local_clusters::columns(facts)),
+        ("VOLUME_LIGHT_SAMPLES", volumes.beam_samples),
+        ("LOCAL_LIGHT_SAMPLES", volumes.lamp_samples),
+        ("VOLUME_GROWTH_PERMILLE", volumes.step_permille),
+        ("VOLUME_MAX_STEPS", volumes.max_steps),
+    ];
     let flags = [
         ("AIR", facts.has_air()),
         ("LIT", facts.is_lit()),
@@ -76,13 +95,18 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("CLOUD_DISTANCE", facts.keeps_cloud_distance()),
         ("CLOUD_ORDINATES", facts.cloud_scattering().ordinate_groups() > 0),
         ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),
+        ("LOCAL_MEDIA", facts.has_local_media()),
+        ("VOLUME_NOISE", facts.has_volume_noise()),
+        ("VOLUME_GRIDS", facts.volumes.iter().any(|volume| volume.grid.is_some())),
+        ("VOLUME_ORDERS", facts.cloud_scattering() != CloudScattering::Single),
         ("SOURCE_FUNCTION", facts.treatment == Treatment::SourceFunction),
         ("CAPTURE", facts.outputs.capture),
         ("SURFACE", facts.surface.is_some()),
+        ("SURFACE_HILLS", facts.surface == Some(Surface::Terrain)),
         ("LAYERS", facts.groups.has_layers()),
         ("HALF_TABLES", settings.table_format == TableFormat::Float16),
     ];
-    let numbers = numbers.into_iter().chain(cloud_numbers);
+    let numbers = numbers.into_iter().chain(cloud_numbers).chain(volume_numbers);
     let numbers = numbers.map(|(name, value)| (name.to_owned(), Definition::U32(value)));
     let flags = flags.map(|(name, value)| (name.to_owned(), Definition::Bool(value)));
     let ordinates = ordinates::problem(facts).map(|problem| problem.definitions());

@@ -25,6 +25,8 @@ mod foreground;
 mod higher_order;
 mod higher_source;
 mod isotropic_series;
+mod local_clusters;
+mod local_media;
 mod multiple_scattering;
 mod optical_depth;
 pub mod ordinates;
@@ -36,6 +38,7 @@ mod sky_view;
 mod terrain;
 mod view_emission;
 mod view_optical_depth;
+mod volume_light;
 
 pub use definitions::definitions;
 pub use foreground::upload as upload_foreground;
@@ -74,8 +77,8 @@ pub const TABLES: [Pass; 12] = [
     aerial_perspective::PASS,
 ];
 
-/// Clouds: their noise and their light, in order.
-pub const CLOUDS: [Pass; 8] = [
+/// Clouds, fog and local volumes: their noise and their light, in order.
+pub const CLOUDS: [Pass; 10] = [
     cloud_shape::PASS,
     cloud_erosion::PASS,
     cloud_weather::PASS,
@@ -84,11 +87,20 @@ pub const CLOUDS: [Pass; 8] = [
     cloud_light::PASS,
     ordinates::EXTINCTION,
     ordinates::LIGHT,
+    volume_light::PASS,
+    local_clusters::PASS,
 ];
 
 /// What makes a frame of them, in order.
-pub const FRAME: [Pass; 6] =
-    [terrain::PASS, clouds::PASS, cloud_reconstruction::PASS, compose::PASS, colour::PASS, display::PASS];
+pub const FRAME: [Pass; 7] = [
+    terrain::PASS,
+    clouds::PASS,
+    cloud_reconstruction::PASS,
+    local_media::PASS,
+    compose::PASS,
+    colour::PASS,
+    display::PASS,
+];
 
 /// Images of a frame, which are filled anew for every group of wavelengths or gather all of them.
 pub const SHARED_IMAGES: [&str; 7] = [

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{
-    CameraBlock, ZONAL_COUNT, atmosphere_block, cloud_frame_block, cloud_layers, cloud_matter, cloud_terms,
-    cosine_nodes, emission_block, gauss_nodes, grid_nodes, height_field_block, legendre_moments, observer_block,
+    CameraBlock, LocalLists, ZONAL_COUNT, atmosphere_block, cloud_frame_block, cloud_layers, cloud_matter, cloud_terms,
+    cosine_nodes, emission_block, gauss_nodes, grid_nodes, height_field_block, lamps, legendre_moments,
+    local_light_blocks, observer_block, volume_blocks, volume_samples, volume_terms,
 };
 use super::{RenderError, Resources, definitions, ordinates};
 use crate::gpu::{Commands, GpuImage, Resource, Work};
@@ -61,6 +62,15 @@ impl<'a> Recording<'a> {
             resources.fill_buffer("cloud_frame", &cloud_frame_block(facts))?;
             resources.fill_buffer("cloud_terms", &cloud_terms(facts))?;
             resources.fill_buffer("cloud_matter", &cloud_matter(facts))?;
+        }
+        if facts.has_local_media() {
+            let lamps = lamps(facts);
+            let lists = LocalLists::new(facts, &lamps);
+            resources.fill_buffer("volumes", &volume_blocks(facts, &lists))?;
+            resources.fill_buffer("volume_terms", &volume_terms(facts))?;
+            resources.fill_buffer("volume_samples", &volume_samples(facts))?;
+            resources.fill_buffer("local_lists", &lists.to_words())?;
+            resources.fill_buffer("local_lights", &local_light_blocks(facts, &lamps, &lists))?;
         }
         if let Some(terrain) = facts.scene.terrain.as_ref() {
             resources.fill_buffer("height_field", &height_field_block(terrain))?;

@@ -11,11 +11,18 @@ pub const PASS: Pass = Pass {
     declaration: Declaration {
         name: NAME,
         need,
-        reads: &["optical_depth_table", "multiple_scattering_table", "cloud_light_image"],
+        reads: &[
+            "optical_depth_table",
+            "multiple_scattering_table",
+            "cloud_light_image",
+            "volume_sky_image",
+            "cluster_masks",
+        ],
         writes: &["terrain_image"],
         inputs: |facts| {
             let scene = facts.scene;
-            Fingerprint::of(&(&scene.terrain, &scene.camera, &facts.lights, &scene.planet))
+            let media = (&facts.volumes, &facts.local_lights);
+            Fingerprint::of(&(&scene.terrain, &scene.camera, &facts.lights, &scene.planet, media))
         },
         bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
     },

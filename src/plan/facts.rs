@@ -2,13 +2,14 @@
 
 use welkin_lut::cloud::CloudLayer;
 use welkin_lut::mapping::SkyViewMapping;
+use welkin_lut::volume::Volume;
 use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::disc::is_wide;
 use super::faint::{Reach, reach};
 use super::{CloudScattering, PlanError, Sequence, Settings, Skipping, TableFormat, Treatment};
 use crate::probe::Orders;
-use crate::scene::{DirectionalLight, GroupColour, Light, Scene, WavelengthGroup};
+use crate::scene::{DirectionalLight, GroupColour, Light, PointLight, Scene, WavelengthGroup};
 
 /// What is to come out of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -104,6 +105,10 @@ pub struct Facts<'a> {
     pub emitters: Vec<&'a Constituent>,
     /// Layers in which there are clouds.
     pub clouds: Vec<&'a CloudLayer>,
+    /// Fog, then local volumes, of which something can be seen; each by its name, as files may list them in any order.
+    pub volumes: Vec<&'a Volume>,
+    /// Point and spot lights that shine.
+    pub local_lights: Vec<&'a PointLight>,
     /// Of each scatterer: the number of its density profile among those of all scatterers.
     pub profile_groups: Vec<u32>,
     /// How multiply scattered light is computed.
@@ -142,6 +147,16 @@ impl<'a> Facts<'a> {
             let what = format!("layer of clouds '{}' has a tabulated phase function", layer.name);
             return Err(PlanError::Unsupported { what });
         }
+        let mut volumes: Vec<_> = scene.volumes.iter().filter(|volume| !volume.is_empty()).collect();
+        volumes.sort_by(|a, b| {
+            let is_local = |volume: &Volume| volume.altitudes_m().is_none();
+            is_local(a).cmp(&is_local(b)).then_with(|| a.name.cmp(&b.name))
+        });
+        let tabulated = |volume: &&&Volume| volume.scatters() && matches!(volume.phase, PhaseFunction::Tabulated(_));
+        if let Some(volume) = volumes.iter().find(tabulated) {
+            let what = format!("'{}' has a tabulated phase function", volume.name);
+            return Err(PlanError::Unsupported { what });
+        }
         let camera = &scene.camera;
         let sorted = sort_lights(&shining_lights(scene)?, scene, &settings.skipping);
         let groups = groups(&constituents);
@@ -160,6 +175,8 @@ impl<'a> Facts<'a> {
             constituents,
             emitters,
             clouds,
+            volumes,
+            local_lights: local_lights(scene),
             lights: sorted.lit,
             faint_discs: sorted.faint_discs,
             left_out: sorted.left_out,
@@ -184,10 +201,12 @@ impl<'a> Facts<'a> {
     }
 
     /// Side of the blocks of pixels of which one is marched through the clouds; 1 where all are. What the frame before has
-    /// seen past the edge of a hill cannot be followed: before surfaces all are.
+    /// seen past the edge of a hill cannot be followed: before surfaces, and among local media, all are.
     pub fn cloud_block(&self) -> u32 {
         match self.sequence {
-            Some(Sequence { before: Some(_), .. }) if self.surface.is_none() => self.settings.clouds.block,
+            Some(Sequence { before: Some(_), .. }) if self.surface.is_none() && !self.has_local_media() => {
+                self.settings.clouds.block
+            }
             _ => 1,
         }
     }
@@ -211,6 +230,21 @@ impl<'a> Facts<'a> {
             Orders::Single => CloudScattering::Single,
             Orders::All => self.settings.clouds.scattering,
         }
+    }
+
+    /// Whether there is fog, a local volume or a local light.
+    pub fn has_local_media(&self) -> bool {
+        !self.volumes.is_empty() || !self.local_lights.is_empty()
+    }
+
+    /// How many of the volumes are fog; they come first.
+    pub fn fog_count(&self) -> u32 {
+        self.volumes.iter().filter(|volume| volume.altitudes_m().is_some()).count() as u32
+    }
+
+    /// Whether billows of some volume are made from the clouds' noise.
+    pub fn has_volume_noise(&self) -> bool {
+        self.volumes.iter().any(|volume| volume.noise.is_some_and(|noise| noise.strength > 0.0))
     }
 
     /// Whether there is anything in the air.
@@ -364,15 +398,23 @@ fn sort_lights<'a>(shining: &[&'a DirectionalLight], scene: &Scene, skipping: &S
     sorted
 }
 
+fn local_lights(scene: &Scene) -> Vec<&PointLight> {
+    let lights = scene.lights.iter().filter_map(|light| match light {
+        Light::Point(light) if light.intensity.iter().any(|&i| i > 0.0) => Some(light),
+        _ => None,
+    });
+    let mut lights: Vec<_> = lights.collect();
+    lights.sort_by(|a, b| a.name.cmp(&b.name));
+    lights
+}
+
 fn shining_lights(scene: &Scene) -> Result<Vec<&DirectionalLight>, PlanError> {
     let mut lights = Vec::new();
     for light in &scene.lights {
         match light {
             Light::Directional(light) if light.irradiance.iter().any(|&e| e > 0.0) => lights.push(light),
             Light::Directional(_) => {}
-            Light::Point(light) => {
-                return Err(PlanError::Unsupported { what: format!("light '{}' is a point light", light.name) });
-            }
+            Light::Point(_) => {}
             Light::Environment(_) => {
                 return Err(PlanError::Unsupported { what: "the scene has an environment light".to_owned() });
             }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{CloudSettings, Directions, MultipleScattering, Quality, Settings, SourceGrid, Treatment};
+use super::{CloudSettings, Directions, MultipleScattering, Quality, Settings, SourceGrid, Treatment, VolumeSettings};
 
 /// Parts into which the way from one preset to the next is divided.
 const PARTS: u32 = 4;
@@ -128,6 +128,7 @@ fn between(a: &Settings, b: &Settings, share: f64) -> Settings {
         sky_view_size: size(a.sky_view_size, b.sky_view_size),
         froxel_size: [x, y, z],
         clouds: clouds_between(&a.clouds, &b.clouds, share),
+        volumes: volumes_between(&a.volumes, &b.volumes, share),
         ..*nearer(a, b, share)
     }
 }
@@ -140,6 +141,18 @@ fn clouds_between(a: &CloudSettings, b: &CloudSettings, share: f64) -> CloudSett
         step_m: count(a.step_m, b.step_m),
         step_permille: count(a.step_permille, b.step_permille),
         max_steps: count(a.max_steps, b.max_steps),
+        ..*nearer(a, b, share)
+    }
+}
+
+fn volumes_between(a: &VolumeSettings, b: &VolumeSettings, share: f64) -> VolumeSettings {
+    let count = |a, b| mean(a, b, share);
+    VolumeSettings {
+        step_permille: count(a.step_permille, b.step_permille),
+        max_steps: count(a.max_steps, b.max_steps),
+        beam_samples: count(a.beam_samples, b.beam_samples),
+        lamp_samples: count(a.lamp_samples, b.lamp_samples),
+        lamp_share: count(a.lamp_share, b.lamp_share),
         ..*nearer(a, b, share)
     }
 }

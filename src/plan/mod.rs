@@ -12,6 +12,7 @@ mod scene_traits;
 mod sequence;
 mod settings;
 mod skipping;
+mod volume_settings;
 
 use std::collections::BTreeMap;
 
@@ -26,6 +27,7 @@ pub use sequence::{Moment, Sequence, follows, pixel_of_block};
 use serde::Serialize;
 pub use settings::{Directions, Quality, Settings, SourceGrid, TableFormat};
 pub use skipping::Skipping;
+pub use volume_settings::VolumeSettings;
 
 /// Why a scene cannot be planned.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

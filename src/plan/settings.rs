@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{CloudSettings, MultipleScattering, Skipping};
+use super::{CloudSettings, MultipleScattering, Skipping, VolumeSettings};
 
 /// How much accuracy a picture is worth. The error of each is measured in docs/accuracy.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -155,6 +155,8 @@ pub struct Settings {
     pub froxel_size: [u32; 3],
     /// Clouds.
     pub clouds: CloudSettings,
+    /// Fog, local volumes and local lights.
+    pub volumes: VolumeSettings,
     /// What is left out because it hardly shows.
     pub skipping: Skipping,
 }
@@ -180,6 +182,7 @@ impl Settings {
                 sky_view_size: [32, 48],
                 froxel_size: [8, 16, 16],
                 clouds: CloudSettings::of(quality),
+                volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,
             },
             Quality::Medium => Self {
@@ -199,6 +202,7 @@ impl Settings {
                 sky_view_size: [48, 96],
                 froxel_size: [12, 24, 24],
                 clouds: CloudSettings::of(quality),
+                volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,
             },
             Quality::High => Self {
@@ -218,6 +222,7 @@ impl Settings {
                 sky_view_size: [80, 144],
                 froxel_size: [16, 48, 32],
                 clouds: CloudSettings::of(quality),
+                volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,
             },
             Quality::Ultra => Self {
@@ -237,6 +242,7 @@ impl Settings {
                 sky_view_size: [96, 192],
                 froxel_size: [24, 64, 48],
                 clouds: CloudSettings::of(quality),
+                volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,
             },
         }

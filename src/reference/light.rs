@@ -6,7 +6,7 @@ use glam::DVec3;
 use welkin_lut::Bands;
 
 use super::matter::around;
-use crate::scene::{Light, LitSphere};
+use crate::scene::{Cone, Light, LitSphere};
 
 /// A source outside the medium.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +37,8 @@ pub enum Emitter {
         position_m: DVec3,
         /// W·sr⁻¹·nm⁻¹.
         intensity: Bands,
+        /// What it shines into.
+        cone: Option<Cone>,
     },
     /// Uniform surroundings.
     Environment {
@@ -83,7 +85,9 @@ impl Emitter {
                 limb_exponent: sun.limb_exponent(),
                 sphere: sun.sphere,
             },
-            Light::Point(point) => Self::Point { position_m: point.position_m, intensity: point.intensity },
+            Light::Point(point) => {
+                Self::Point { position_m: point.position_m, intensity: point.intensity, cone: point.cone }
+            }
             Light::Environment(sky) => Self::Environment { radiance: sky.radiance },
         }
     }
@@ -118,12 +122,14 @@ impl Emitter {
                 let irradiance = self.disc_radiance(direction).map(|l| l / pdf);
                 LightSample { direction, distance_m: f64::INFINITY, irradiance, pdf_per_sr: Some(pdf) }
             }
-            Self::Point { position_m, intensity } => {
+            Self::Point { position_m, intensity, cone } => {
                 let offset = position_m - p;
                 let squared = offset.length_squared();
                 let distance_m = squared.sqrt();
-                let irradiance = intensity.map(|i| i / squared);
-                LightSample { direction: offset / distance_m, distance_m, irradiance, pdf_per_sr: None }
+                let direction = offset / distance_m;
+                let share = cone.map_or(1.0, |cone| cone.share(-direction.dot(cone.axis.to_vector())));
+                let irradiance = intensity.map(|i| share * i / squared);
+                LightSample { direction, distance_m, irradiance, pdf_per_sr: None }
             }
             Self::Environment { radiance } => {
                 let direction = around(DVec3::Z, 1.0 - 2.0 * u, v);

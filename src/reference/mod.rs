@@ -19,6 +19,7 @@ mod grid;
 mod guide;
 mod light;
 mod line;
+mod line_event;
 pub mod marching;
 mod matter;
 pub mod path;
@@ -38,6 +39,7 @@ mod spread;
 mod sunward;
 mod tally;
 pub mod transport;
+mod volumes;
 mod walk;
 mod world;
 

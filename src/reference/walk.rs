@@ -1,4 +1,5 @@
-//! One backward walk: delta tracking, next-event estimation at every tentative collision, Russian roulette.
+//! One backward walk: delta tracking, next-event estimation at every tentative collision (of point lights, once on every
+//! ray: [`super::line_event`]), Russian roulette.
 //!
 //! All bands travel together. At a tentative collision the walk scatters or goes on with probabilities in proportion
 //! to what the bands' weights would become ("history-aware" spectral tracking, Kutz et al. 2017, section 5), so the
@@ -51,6 +52,8 @@ pub struct Walker<'a> {
     pub(super) world: &'a World,
     guide: Option<Guide>,
     sunward: Option<Sunward<'a>>,
+    /// Whether there are point lights, whose light in matter is found ray by ray and not at collisions.
+    has_points: bool,
     pub(super) density: Vec<f64>,
     pub(super) segment: Segment,
     /// The random numbers.
@@ -82,6 +85,7 @@ impl<'a> Walker<'a> {
             world,
             guide: Guide::new(world),
             sunward: Sunward::new(world),
+            has_points: world.lights.iter().any(is_point),
             density: Vec::new(),
             segment: Segment::default(),
             draw,
@@ -105,6 +109,9 @@ impl<'a> Walker<'a> {
         };
         if let Some(guide) = self.guide.filter(|guide| guide.spreads(self.world, p)) {
             return self.spread(state, &span, guide.sun(), tally);
+        }
+        if self.has_points {
+            self.line_event(state, &span, tally);
         }
         let mut t = span.start_m;
         while let Some((found, source)) = self.world.tentative(p, d, t, span.end_m, &mut self.draw) {
@@ -155,7 +162,7 @@ impl<'a> Walker<'a> {
         }
         let (b, c) = (local.scattering(), local.extinction());
         if sum(b) > 0.0 {
-            self.next_event(state, at, &vertex, |_| true, tally);
+            self.next_event(state, at, &vertex, |light| !is_point(light), tally);
         }
         let scattered: Bands = std::array::from_fn(|j| state.weight[j] * b[j] / rate);
         let passed: Bands = std::array::from_fn(|j| state.weight[j] * (1.0 - c[j] / rate).max(0.0));
@@ -366,6 +373,10 @@ impl<'a> Walker<'a> {
         state.weight = state.weight.map(|w| w / share);
         true
     }
+}
+
+fn is_point(light: &Emitter) -> bool {
+    matches!(light, Emitter::Point { .. })
 }
 
 /// How much each constituent scatters, over the bands as the walk weighs them, relative to the sum of the weights: a

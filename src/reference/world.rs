@@ -12,6 +12,7 @@ use super::light::Emitter;
 use super::random::Draw;
 use super::shape::{End, Shape, Span};
 use super::spectrum;
+use super::volumes;
 use crate::scene::{Scene, Terrain};
 
 /// The problem that every solver is given. Cheap to clone: matter is shared.
@@ -47,13 +48,14 @@ impl World {
         Self { shape, ground_albedo, air, bodies: Arc::new([]), relief: None, lights: Vec::new() }
     }
 
-    /// The scene's planet, medium, clouds and lights; the origin is the ground point below the camera.
+    /// The scene's planet, medium, clouds, volumes and lights; the origin is the ground point below the camera.
     pub fn from_scene(scene: &Scene) -> Self {
         let planet = &scene.planet;
         let shape = Shape::Sphere { radius_m: planet.radius_m, height_m: planet.atmosphere_height_m };
         let mut world = Self::stratified(shape, planet.ground_albedo, &scene.medium.constituents);
-        let body = |layer| CloudShell::body(layer, planet.radius_m, scene.time_s);
-        world.bodies = scene.clouds.iter().filter_map(body).collect();
+        let clouds = scene.clouds.iter().filter_map(|layer| CloudShell::body(layer, planet.radius_m, scene.time_s));
+        let volumes = scene.volumes.iter().filter_map(|volume| volumes::body(volume, planet.radius_m, scene.time_s));
+        world.bodies = clouds.chain(volumes).collect();
         world.lights = scene.lights.iter().map(Emitter::new).collect();
         world.relief = scene.terrain.clone().map(Arc::new);
         world

@@ -57,6 +57,7 @@ impl Renderer {
 fn air_alone(scene: &Scene) -> Scene {
     let mut alone = scene.clone();
     alone.clouds.clear();
+    alone.volumes.clear();
     alone.terrain = None;
     alone.medium.constituents.iter_mut().for_each(|constituent| constituent.emission_per_m = [0.0; BAND_COUNT]);
     alone.camera.altitude_m = 0.0;

@@ -17,9 +17,10 @@ use super::moon::assemble_moon;
 use super::read::SpectrumRequest;
 use super::spectrum::{Sources, Spectrum, White};
 use super::sun_position::sun_direction;
+use super::volumes::assemble_volumes;
 use super::{
-    Camera, Direction, DirectionalLight, Display, EnvironmentLight, Light, PointLight, Preset, Problem, Scene, Terrain,
-    ToneMap,
+    Camera, Cone, Direction, DirectionalLight, Display, EnvironmentLight, Light, PointLight, Preset, Problem, Scene,
+    Terrain, ToneMap,
 };
 
 const DEFAULT_FIELD_OF_VIEW_DEG: f64 = 60.0;
@@ -33,6 +34,7 @@ pub fn assemble(file: &SceneFile, path: &Path, request: SpectrumRequest) -> Resu
     let medium = assemble_medium(file.medium.as_ref(), file.preset, path.parent().unwrap_or(Path::new("")))?;
     let directory = path.parent().unwrap_or(Path::new(""));
     let clouds = assemble_clouds(&file.clouds, planet.atmosphere_height_m, directory)?;
+    let volumes = assemble_volumes(&file.fog, &file.volumes, directory)?;
     let time_s = file.time_s.map_or(0.0, |time| time.get());
     let sun = assemble_sun(&file.sun, file.preset)?;
     let moon = file.moon.as_ref().map(|moon| assemble_moon(moon, &file.sun, &sun, file.preset)).transpose()?;
@@ -53,6 +55,7 @@ pub fn assemble(file: &SceneFile, path: &Path, request: SpectrumRequest) -> Resu
         planet,
         medium,
         clouds,
+        volumes,
         time_s,
         lights,
         terrain,
@@ -196,6 +199,26 @@ fn add_lights(file: &LightsFile, lights: &mut Vec<Light>) -> Result<(), Problem>
             name: light.name.clone(),
             position_m,
             intensity: light.intensity.get(),
+            cone: None,
+        }));
+    }
+    for (index, light) in file.spot.iter().enumerate() {
+        let path = format!("light.spot[{index}]");
+        claim(format!("{path}.name"), &light.name)?;
+        let (inner_deg, outer_deg) = (light.inner_deg.get(), light.outer_deg.get());
+        if outer_deg <= inner_deg {
+            let message = format!("invalid value: `{outer_deg}`, expected a number above inner_deg, {inner_deg}");
+            return Err(Problem::new(format!("{path}.outer_deg"), message));
+        }
+        lights.push(Light::Point(PointLight {
+            name: light.name.clone(),
+            position_m: DVec3::from_array(light.position_m.map(|coordinate| coordinate.get())),
+            intensity: light.intensity.get(),
+            cone: Some(Cone {
+                axis: direction(light.elevation_deg.get(), light.azimuth_deg.map_or(0.0, |azimuth| azimuth.get())),
+                inner_cosine: inner_deg.to_radians().cos(),
+                outer_cosine: outer_deg.to_radians().cos(),
+            }),
         }));
     }
     let environment = file.environment.as_ref().map(|light| EnvironmentLight { radiance: light.radiance.get() });

@@ -10,7 +10,7 @@ use super::{Direction, LitSphere};
 pub enum Light {
     /// So far away that its rays are parallel, but for the width of its disc: the sun, a moon.
     Directional(DirectionalLight),
-    /// A point that shines equally in all directions.
+    /// A point that shines equally in all directions, or into a cone.
     Point(PointLight),
     /// Uniform radiance from every direction of the surrounding space.
     Environment(EnvironmentLight),
@@ -55,8 +55,30 @@ pub struct PointLight {
     pub name: String,
     /// Position in the local frame (east, north, up) from the ground point below the camera, m.
     pub position_m: DVec3,
-    /// Radiant intensity, W·sr⁻¹·nm⁻¹.
+    /// Radiant intensity, W·sr⁻¹·nm⁻¹: in all directions, or along the axis of the cone.
     pub intensity: Bands,
+    /// What it shines into; none is everywhere.
+    pub cone: Option<Cone>,
+}
+
+/// Directions that a spot light shines into.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cone {
+    /// Where its axis points.
+    pub axis: Direction,
+    /// Cosine of the angle up to which it shines in full.
+    pub inner_cosine: f64,
+    /// Cosine of the angle beyond which it does not shine; below the inner.
+    pub outer_cosine: f64,
+}
+
+impl Cone {
+    /// Share of the intensity in a direction away from the light whose angle from the axis has this cosine: a cubic
+    /// between the two angles.
+    pub fn share(&self, cosine: f64) -> f64 {
+        let x = ((cosine - self.outer_cosine) / (self.inner_cosine - self.outer_cosine)).clamp(0.0, 1.0);
+        x * x * (3.0 - 2.0 * x)
+    }
 }
 
 /// Uniform surroundings.

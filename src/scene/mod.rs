@@ -14,18 +14,20 @@ mod lunar_photometry;
 mod medium;
 mod moon;
 mod moon_position;
+mod npy;
 mod preset;
 mod read;
 mod spectrum;
 mod sun_position;
 mod terrain;
+mod volumes;
 
 pub use camera::{Camera, Display, ToneMap};
 pub use direction::Direction;
 pub use effect::Effect;
 pub use error::{InvalidField, SceneError};
 pub use file::schema;
-pub use light::{DirectionalLight, EnvironmentLight, Light, PointLight};
+pub use light::{Cone, DirectionalLight, EnvironmentLight, Light, PointLight};
 pub use lit_sphere::LitSphere;
 pub use locate::Place;
 pub use preset::{Preset, PresetSun};
@@ -35,6 +37,7 @@ pub use sun_position::{SunPositionError, sun_direction};
 pub use terrain::Terrain;
 
 use welkin_lut::cloud::CloudLayer;
+use welkin_lut::volume::Volume;
 use welkin_lut::{Medium, Planet};
 
 /// Everything that determines a picture, checked: no stage after this one meets an impossible number.
@@ -48,7 +51,9 @@ pub struct Scene {
     pub medium: Medium,
     /// Layers of clouds, which may overlap.
     pub clouds: Vec<CloudLayer>,
-    /// Seconds since the start: how far wind has carried the clouds, and they have changed.
+    /// Fog and local volumes, which may overlap each other and the clouds; their order has no meaning.
+    pub volumes: Vec<Volume>,
+    /// Seconds since the start: how far wind has carried clouds and fog, and they have changed.
     pub time_s: f64,
     /// What shines; an empty list is darkness.
     pub lights: Vec<Light>,

@@ -8,6 +8,7 @@ use welkin_lut::spectrum::{
     Channels, ColourSpace, SpectralNode, SpectralRule, adaptation, between_bands, cie, scaled_between_bands, solar,
     three_bands,
 };
+use welkin_lut::volume::Volume;
 use welkin_lut::{BAND_COUNT, BAND_WAVELENGTHS_NM, Bands};
 
 use super::preset::Quantity;
@@ -113,6 +114,9 @@ impl Scene {
             let field = format!("clouds.{}.albedo", cloud.name);
             cloud.albedo = sources.albedo(&field, cloud.albedo, wavelengths);
         }
+        for volume in &mut scene.volumes {
+            sources.at_wavelengths(volume, wavelengths);
+        }
         if let Some(terrain) = &mut scene.terrain {
             terrain.albedo = sources.albedo(sources.terrain_field(), terrain.albedo, wavelengths);
             terrain.snow_albedo = sources.albedo("terrain.snow_albedo", terrain.snow_albedo, wavelengths);
@@ -192,6 +196,31 @@ impl Sources {
             return wavelengths_nm.map(|nm| scaled_between_bands(spectrum, known_bands, bands, nm));
         }
         wavelengths_nm.map(|nm| between_bands(bands, nm))
+    }
+
+    /// Coefficients of a volume. What a file says of fog, extinction and albedo, is what has a spectrum.
+    fn at_wavelengths(&self, volume: &mut Volume, wavelengths_nm: Bands) {
+        let field = |name: &str| format!("volumes.{}.{name}", volume.name);
+        let of = |name: &str, bands: Bands| match self.listed(&field(name)) {
+            Some(known) => wavelengths_nm.map(|nm| scaled(known, bands, nm)),
+            None => wavelengths_nm.map(|nm| between_bands(bands, nm)),
+        };
+        if volume.altitudes_m().is_some() {
+            let extinction = volume.extinction_per_m();
+            let share = |band: usize| {
+                if extinction[band] > 0.0 { volume.scattering_per_m[band] / extinction[band] } else { 1.0 }
+            };
+            let albedo = self.albedo(&field("albedo"), std::array::from_fn(share), wavelengths_nm);
+            let extinction = of("extinction_per_m", extinction);
+            let scattering = std::array::from_fn(|band| albedo[band] * extinction[band]);
+            volume.absorption_per_m = std::array::from_fn(|band| extinction[band] - scattering[band]);
+            volume.scattering_per_m = scattering;
+            return;
+        }
+        let scattering = of("scattering_per_m", volume.scattering_per_m);
+        let absorption = of("absorption_per_m", volume.absorption_per_m);
+        let emission = of("emission_per_m", volume.emission_per_m);
+        (volume.scattering_per_m, volume.absorption_per_m, volume.emission_per_m) = (scattering, absorption, emission);
     }
 
     /// Linear between the bands and constant beyond, so that it stays within [0, 1].

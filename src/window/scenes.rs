@@ -2,7 +2,7 @@
 
 macro_rules! scenes {
     ($($name:literal),* $(,)?) => {
-        /// Names and texts of the files in `scenes/` and `scenes/clouds/`.
+        /// Names and texts of the files in `scenes/`, `scenes/clouds/` and `scenes/fog/`.
         pub const SCENES: &[(&str, &str)] =
             &[$(($name, include_str!(concat!("../../scenes/", $name, ".toml")))),*];
     };
@@ -24,6 +24,12 @@ scenes!(
     "clouds/thin-cirrus",
     "clouds/towering-congestus",
     "clouds/inside-a-cloud",
+    "fog/valley-morning",
+    "fog/street-lamp",
+    "fog/two-colours",
+    "fog/glowing-gas",
+    "fog/smoke-before-sun",
+    "fog/under-clouds",
 );
 
 /// The scene that the window opens with where none is named.

@@ -1,8 +1,8 @@
 //! From noise to density.
 
-use super::noise::{CURL_SIZE, CloudNoise, EROSION_SIZE, SHAPE_SIZE, WEATHER_SIZE, WeatherChannel};
+use super::noise::{CURL_SIZE, CloudNoise, WEATHER_SIZE, WeatherChannel};
 use super::parameters::{ANVIL, CloudParameters};
-use super::sampling::{bilinear, trilinear, unit};
+use super::sampling::{bilinear, unit};
 
 /// The density of one layer at one time, relative to its extinction. The shaders' module `cloud_field` is the same chain.
 #[derive(Debug, Clone, Copy)]
@@ -102,7 +102,7 @@ impl CloudField<'_> {
     fn shape(&self, [u, v, up_m]: [f64; 3]) -> f64 {
         let p = &self.parameters;
         let at = |axis: usize, x: f64| x * f64::from(p.shape_per_m[axis]) + f64::from(p.shape_offset[axis]);
-        trilinear(SHAPE_SIZE, [at(0, u), at(1, v), at(2, up_m)], &self.noise.shape)
+        self.noise.shape_at([at(0, u), at(1, v), at(2, up_m)])
     }
 
     /// What is left of the shape in a column, at least of cloud or anvil; not above 0 where nothing is.
@@ -121,7 +121,7 @@ impl CloudField<'_> {
         let flow = |axis: usize| 2.0 * bilinear(CURL_SIZE, at, |texel| self.noise.curl[texel][axis]) - 1.0;
         let shift_m = f64::from(p.curl_m) * (1.0 - height);
         let place = [(u + shift_m * flow(0)) * scale + x, (v + shift_m * flow(1)) * scale + y, up_m * scale + z];
-        let billows = trilinear(EROSION_SIZE, place, &self.noise.erosion);
+        let billows = self.noise.erosion_at(place);
         let wisps = 1.0 - clamp(8.0 * height);
         1.0 - billows + (2.0 * billows - 1.0) * wisps
     }

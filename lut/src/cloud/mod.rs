@@ -18,6 +18,7 @@ pub use bounds::{CloudBounds, SHAPE_BLOCKS, WEATHER_BLOCKS};
 pub use field::CloudField;
 pub use form::{CloudDefaults, CloudKind};
 pub use layer::CloudLayer;
+pub(crate) use noise::noise_place;
 pub use noise::{CURL_SIZE, CloudNoise, EROSION_SIZE, SHAPE_SIZE, WEATHER_SIZE, WeatherChannel};
 pub use parameters::CloudParameters;
 pub use plane::to_map;

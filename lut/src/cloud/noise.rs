@@ -6,7 +6,8 @@
 use std::sync::OnceLock;
 use std::thread;
 
-use super::fixed_noise::{ONE, Worley, perlin_octaves};
+use super::fixed_noise::{ONE, Worley, hash, perlin_octaves};
+use super::sampling::trilinear;
 
 /// Texels along each side of the shape's volume.
 pub const SHAPE_SIZE: usize = 128;
@@ -60,6 +61,21 @@ impl CloudNoise {
             weather: weather_map(),
         })
     }
+
+    /// The shape at a place in tiles, in [0, 1].
+    pub fn shape_at(&self, tiles: [f64; 3]) -> f64 {
+        trilinear(SHAPE_SIZE, tiles, &self.shape)
+    }
+
+    /// The erosion at a place in tiles, in [0, 1].
+    pub fn erosion_at(&self, tiles: [f64; 3]) -> f64 {
+        trilinear(EROSION_SIZE, tiles, &self.erosion)
+    }
+}
+
+/// Where along an axis a seed begins in a tile, in [0, 1[; different salts have nothing to do with each other.
+pub(crate) fn noise_place(salt: i32, axis: i32, seed: u32) -> f64 {
+    f64::from(hash(salt, axis, 0, seed)) / 4_294_967_296.0
 }
 
 /// A texel's centre in 256ths of a cell, with so many cells in a tile of so many texels.

@@ -1,8 +1,7 @@
 //! The numbers of one layer at one time, as the device has them.
 
-use super::fixed_noise::hash;
 use super::layer::CloudLayer;
-use super::noise::{WeatherChannel, weather_map};
+use super::noise::{WeatherChannel, noise_place, weather_map};
 
 /// Everything that the chain from noise to density needs of a layer. The numbers are those of the device, in 32 bits:
 /// where the definition says a number, it is this one. Fields stand in the order of the shaders' struct.
@@ -68,8 +67,7 @@ impl CloudParameters {
         let drift = [along[0] * drift_m[0] + along[1] * drift_m[1], along[0] * drift_m[1] - along[1] * drift_m[0]];
         let rise_m = layer.evolution_m_per_s * time_s;
         let offset = |salt: i32, axis: i32, moved_m: f64, per_m: f64| {
-            let place = f64::from(hash(salt, axis, 0, layer.seed)) / 4_294_967_296.0;
-            (place - moved_m * per_m).rem_euclid(1.0) as f32
+            (noise_place(salt, axis, layer.seed) - moved_m * per_m).rem_euclid(1.0) as f32
         };
         let shape_per_m = form.shape_tile_m.map(f64::recip);
         let (erosion_per_m, weather_per_m) = (form.erosion_tile_m.recip(), form.weather_tile_m.recip());

@@ -5,18 +5,24 @@ mod camera;
 mod cloud_frame;
 mod clouds;
 mod emission;
+mod local_lights;
+mod local_lists;
 mod observer;
 mod quadrature;
 mod terrain;
+mod volumes;
 
 pub use atmosphere::{atmosphere_block, legendre_moments, lobe_count};
 pub use camera::CameraBlock;
 pub use cloud_frame::cloud_frame_block;
 pub use clouds::{cloud_layers, cloud_matter, cloud_term_count, cloud_terms};
 pub use emission::{ZONAL_COUNT, emission_block, emission_breakpoints_m};
+pub use local_lights::{lamps, local_light_blocks, local_light_count};
+pub use local_lists::LocalLists;
 pub use observer::observer_block;
 pub use quadrature::{GaussNodeBlock, cosine_nodes, gauss_nodes, grid_nodes};
 pub use terrain::height_field_block;
+pub use volumes::{volume_blocks, volume_samples, volume_term_count, volume_terms};
 
 use welkin_lut::Bands;
 
@@ -31,8 +37,10 @@ mod tests {
     use super::cloud_frame::CloudFrameHeader;
     use super::clouds::{CloudMatterBlock, CloudTermBlock};
     use super::emission::EmitterBlock;
+    use super::local_lights::LocalLightBlock;
     use super::observer::{DirectionalLightBlock, ObserverHeader, SkyViewRangeBlock};
     use super::terrain::{HeightFieldHeader, OctaveBlock};
+    use super::volumes::{VolumeBlock, VolumeTermBlock};
     use super::*;
     use crate::passes::definitions;
     use crate::plan::{Facts, Outputs, Quality, Settings};
@@ -144,6 +152,65 @@ mod tests {
         let frame = offsets(&clouds, "CloudFrame");
         assert_eq!(frame[5], ("half_height".to_owned(), offset_of!(CloudFrameHeader, half_height)));
         assert_eq!(frame[7], ("altitude_m".to_owned(), offset_of!(CloudFrameHeader, altitude_m)));
+    }
+
+    #[test]
+    fn blocks_of_fog_volumes_and_lamps_lie_in_memory_as_the_shaders_declare_them() {
+        let media = shader_of("fog/street-lamp", "local_media");
+        assert_layout!(
+            media,
+            "Volume",
+            VolumeBlock,
+            [
+                centre_m,
+                kind,
+                half_size_m,
+                per_edge,
+                noise_offset,
+                noise_per_m,
+                scattering_per_m,
+                noise_strength,
+                extinction_per_m,
+                detail_m,
+                emission_per_m,
+                per_scale_height,
+                turn,
+                bottom_m,
+                top_m,
+                grid_size,
+                grid_first,
+                similarity,
+                reduced_cosine,
+                backward,
+                is_even,
+                again,
+                first_block,
+                occluders_first,
+                occluder_count
+            ]
+        );
+        assert_eq!(size(&media, "Volume"), size_of::<VolumeBlock>());
+        assert_layout!(media, "VolumeTerm", VolumeTermBlock, [attenuation, lobes]);
+        assert_eq!(size(&media, "VolumeTerm"), size_of::<VolumeTermBlock>());
+        assert_layout!(
+            media,
+            "LocalLight",
+            LocalLightBlock,
+            [
+                position_m,
+                reach_m,
+                intensity,
+                size_squared,
+                axis,
+                inner_cosine,
+                diffuse,
+                outer_cosine,
+                decay_per_m,
+                lists_first,
+                list_count
+            ]
+        );
+        assert_eq!(size(&media, "LocalLight"), size_of::<LocalLightBlock>());
     }
 
     #[test]

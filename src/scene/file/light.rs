@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::value::Datetime;
 
-use super::number::{Altitude, AngularRadius, Azimuth, Elevation, Light, Longitude, Number};
+use super::number::{Altitude, AngularRadius, Azimuth, ConeAngle, Elevation, Light, Longitude, Number};
 use super::per_band::PerBand;
 
 /// The sun: where it stands, and what differs from the preset's.
@@ -48,6 +48,9 @@ pub struct LightsFile {
     /// Points that shine equally in all directions.
     #[serde(default)]
     pub point: Vec<PointFile>,
+    /// Points that shine into a cone.
+    #[serde(default)]
+    pub spot: Vec<SpotFile>,
     /// Uniform radiance from the surrounding space.
     pub environment: Option<EnvironmentFile>,
 }
@@ -81,6 +84,26 @@ pub struct PointFile {
     pub position_m: [Number<Altitude>; 3],
     /// Radiant intensity, W/(sr nm).
     pub intensity: PerBand<Light>,
+}
+
+/// A point that shines into a cone.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpotFile {
+    /// What it is called in reports.
+    pub name: String,
+    /// Position [east, north, up] from the ground below the camera, m.
+    pub position_m: [Number<Altitude>; 3],
+    /// Radiant intensity along the cone's axis, W/(sr nm).
+    pub intensity: PerBand<Light>,
+    /// Where the axis points: angle above the horizontal, degrees; -90 is straight down.
+    pub elevation_deg: Number<Elevation>,
+    /// Where the axis points: angle from north towards east, degrees; by default 0.
+    pub azimuth_deg: Option<Number<Azimuth>>,
+    /// Angle from the axis up to which it shines in full, degrees.
+    pub inner_deg: Number<ConeAngle>,
+    /// Angle from the axis beyond which it does not shine, degrees; above `inner_deg`.
+    pub outer_deg: Number<ConeAngle>,
 }
 
 /// Uniform surroundings.

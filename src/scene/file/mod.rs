@@ -8,6 +8,7 @@ pub mod number;
 mod per_band;
 mod spectrum;
 mod terrain;
+mod volumes;
 
 pub use clouds::CloudFile;
 pub use light::{LightsFile, SunFile, WhenFile};
@@ -16,6 +17,7 @@ pub use moon::MoonFile;
 pub use per_band::PerBand;
 pub use spectrum::{ChannelsFile, SpectrumFile, WhiteFile, listed};
 pub use terrain::TerrainFile;
+pub use volumes::{FogFile, FogProfileFile, GridFile, NoiseFile, VolumeFile, VolumeShapeFile};
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -29,7 +31,7 @@ use number::{Altitude, Azimuth, Elevation, Exposure, FieldOfView, Fraction, Leng
 pub struct SceneFile {
     /// What the scene is called in reports; by default the file's name without its ending.
     pub name: Option<String>,
-    /// Seconds since the start: wind has carried the clouds and they have changed; by default 0.
+    /// Seconds since the start: wind has carried clouds and fog and they have changed; by default 0.
     pub time_s: Option<Number<Time>>,
     /// The planet, air and sun that everything below is a change to.
     pub preset: Preset,
@@ -41,6 +43,12 @@ pub struct SceneFile {
     /// Layers of clouds.
     #[serde(default)]
     pub clouds: Vec<CloudFile>,
+    /// Banks of fog over the ground.
+    #[serde(default)]
+    pub fog: Vec<FogFile>,
+    /// Boxes and ellipsoids of smoke, mist or glowing gas.
+    #[serde(default)]
+    pub volumes: Vec<VolumeFile>,
     /// The sun.
     pub sun: SunFile,
     /// The moon; by default none shines.

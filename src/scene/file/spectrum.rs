@@ -98,8 +98,8 @@ pub enum WhiteFile {
     D65,
 }
 
-/// The spectra that a file lists, by `planet.ground_albedo`, `medium.CONSTITUENT.FIELD`,
-/// `clouds.NAME.albedo` and `light.NAME`.
+/// The spectra that a file lists, by `planet.ground_albedo`, `medium.CONSTITUENT.FIELD`, `clouds.NAME.albedo`,
+/// `volumes.NAME.FIELD` (fog's too) and `light.NAME`.
 pub fn listed(file: &SceneFile) -> BTreeMap<String, Vec<[f64; 2]>> {
     let mut spectra = BTreeMap::new();
     let mut add = |name: String, points: Option<&[[f64; 2]]>| {
@@ -119,6 +119,20 @@ pub fn listed(file: &SceneFile) -> BTreeMap<String, Vec<[f64; 2]>> {
     for cloud in &file.clouds {
         let name = cloud.name.clone().unwrap_or_else(|| CloudKind::from(cloud.kind).name().to_owned());
         add(format!("clouds.{name}.albedo"), cloud.albedo.as_ref().and_then(|value| value.points()));
+    }
+    for fog in &file.fog {
+        let name = fog.name.as_deref().unwrap_or("fog");
+        add(format!("volumes.{name}.extinction_per_m"), fog.extinction_per_m.points());
+        add(format!("volumes.{name}.albedo"), fog.albedo.as_ref().and_then(|value| value.points()));
+    }
+    for file in &file.volumes {
+        let fields = [&file.scattering_per_m, &file.absorption_per_m, &file.emission_per_m];
+        for (field, value) in ["scattering_per_m", "absorption_per_m", "emission_per_m"].iter().zip(fields) {
+            add(format!("volumes.{}.{field}", file.name), value.as_ref().and_then(|value| value.points()));
+        }
+    }
+    for light in &file.light.spot {
+        add(format!("light.{}", light.name), light.intensity.points());
     }
     for light in &file.light.directional {
         add(format!("light.{}", light.name), light.irradiance.points());

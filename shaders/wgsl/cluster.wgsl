@@ -1,0 +1,33 @@
+#define_import_path welkin::cluster
+// Clusters: tiles of pixels cut into slices of distance, each with the local volumes and lights that may matter in it, as
+// bits (Olsson, Billeter & Assarsson 2012).
+//
+// Definitions: VOLUME_COUNT, FOG_COUNT, LOCAL_LIGHT_COUNT, CLUSTER_COLUMNS.
+
+const TILE: u32 = 16u;
+const COLUMNS: u32 = #{CLUSTER_COLUMNS}u;
+const SLICES: u32 = 24u;
+// Where the first slice ends, and by what factor the next ends are farther: the last of them at 45 km.
+const NEAR_M: f32 = 4.0;
+const LOG_RATIO: f32 = 0.5849625;
+// Words of bits: of volumes without fog, then of lights.
+const VOLUME_WORDS: u32 = (#{VOLUME_COUNT}u - #{FOG_COUNT}u + 31u) / 32u;
+const LIGHT_WORDS: u32 = (#{LOCAL_LIGHT_COUNT}u + 31u) / 32u;
+// WGSL has no empty arrays.
+const WORDS: u32 = max(VOLUME_WORDS + LIGHT_WORDS, 1u);
+
+fn slice_of(distance_m: f32) -> u32 {
+    let beyond = log2(max(distance_m, 0.5 * NEAR_M) / NEAR_M) / LOG_RATIO;
+    return u32(clamp(floor(beyond) + 1.0, 0.0, f32(SLICES - 1u)));
+}
+
+// Where a slice ends, m; the last one does not.
+fn slice_end_m(slice: u32) -> f32 {
+    return select(NEAR_M * exp2(f32(slice) * LOG_RATIO), 1e30, slice + 1u >= SLICES);
+}
+
+// The first word of a cluster.
+fn cluster_of(pixel: vec2<u32>, slice: u32) -> u32 {
+    let tile = pixel / TILE;
+    return ((tile.y * COLUMNS + tile.x) * SLICES + slice) * WORDS;
+}

@@ -1,0 +1,49 @@
+#define_import_path welkin::media_ground
+// What fog leaves of the light on the ground and on hills, and what local lights bring there.
+//
+// Definitions: FOG_COUNT, LOCAL_LIGHT_COUNT.
+
+#import welkin::atmosphere::{atmosphere, PI}
+#import welkin::cloud_daylight::{light_in_air, surroundings}
+#import welkin::cluster::{LIGHT_WORDS, VOLUME_WORDS}
+#import welkin::observer::observer
+#import welkin::slab::{downward, Slab}
+#import welkin::tables::table_sampler
+#import welkin::volume_field::{volumes, Place, FOG_COUNT}
+#import welkin::volume_grid::{block_uvw, spot_of}
+#import welkin::volume_source::volume_sky_image
+#if LOCAL_LIGHT_COUNT > 0
+#import welkin::local_light::local_irradiance
+#endif
+
+@group(1) @binding(46) var<storage, read> cluster_masks: array<u32>;
+
+// Share of the light on a horizontal plane, of which shares of the beam and of the sky reach the top of the fog.
+fn fog_share(place: Place, above: vec2<f32>) -> f32 {
+    if FOG_COUNT == 0u || place.altitude_m >= volumes[0].top_m {
+        return 1.0;
+    }
+    let spot = spot_of(0u, place);
+    let depths = textureSampleLevel(volume_sky_image, table_sampler, block_uvw(spot.block, spot.share, 0u, 1u), 0.0);
+    let mu = observer.lights[0].direction.z;
+    let beam = above.x * max(mu, 0.0) * light_in_air(0u, place.altitude_m, mu);
+    let sky = above.y * PI * surroundings(place.altitude_m, mu, observer.lights[0].irradiance).above;
+    let slab = Slab(beam, max(mu, 0.02), sky, volumes[0].reduced_cosine, atmosphere.ground_albedo, depths.x + depths.z);
+    return (downward(slab, depths.x) / max(beam + sky, vec3<f32>(1e-20))).g;
+}
+
+// Irradiance that the local lights of a cluster bring to a plane, W/m2/nm.
+fn lit_by_lamps(place: Place, normal: vec3<f32>, cluster: u32) -> vec3<f32> {
+    var irradiance = vec3<f32>(0.0);
+#if LOCAL_LIGHT_COUNT > 0
+    for (var word = 0u; word < LIGHT_WORDS; word++) {
+        var bits = cluster_masks[cluster + VOLUME_WORDS + word];
+        while bits != 0u {
+            let light = 32u * word + firstTrailingBit(bits);
+            bits &= bits - 1u;
+            irradiance += local_irradiance(light, place, normal);
+        }
+    }
+#endif
+    return irradiance;
+}

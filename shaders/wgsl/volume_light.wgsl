@@ -1,0 +1,109 @@
+// Pass: optical depth from each cell of the grids of fog and local volumes to each light, through the sum of all media, and
+// straight up and down through the fog: what a march would otherwise find again for every sample of every frame.
+//
+// Definitions: CLOUDS; SURFACE_HILLS (hills may stand before the lights); VOLUME_LIGHT_SAMPLES.
+
+#import welkin::atmosphere::atmosphere
+#import welkin::cloud_grid::local_direction
+#ifdef CLOUDS
+#import welkin::cloud_daylight::daylight_of
+#endif
+#ifdef SURFACE_HILLS
+#import welkin::height_field::{height_below, height_field}
+#endif
+#import welkin::local_lists::local_lists
+#import welkin::observer::{observer, LIGHT_COUNT}
+#import welkin::volume_field::{
+    fog_length_m, local_length_m, place_of, volume_density, volumes, Place, FOG_COUNT, VOLUME_COUNT,
+}
+#import welkin::volume_grid::{place_in_block, CELLS, COLUMNS, FOG_LEVELS}
+
+// Optical depth of fog and volumes in the bands, and in the last component what clouds and hills dim the light by.
+@group(1) @binding(42) var volume_light_image: texture_storage_3d<rgba16float, write>;
+// Straight up and down through fog and the volume itself: depths times the share that turns light from its line, and times
+// that which turns it back.
+@group(1) @binding(43) var volume_sky_image: texture_storage_3d<rgba16float, write>;
+
+const SAMPLES: u32 = #{VOLUME_LIGHT_SAMPLES}u;
+const FARTHEST_M: f32 = 60000.0;
+// Beyond the range of half floats nothing is seen.
+const DARK: f32 = 60000.0;
+
+#ifdef SURFACE_HILLS
+const HILL_STEPS: u32 = 48u;
+// How far a light's edge reaches into the shadow, rad.
+const PENUMBRA_RAD: f32 = 0.02;
+
+// What hills leave of a light, as an optical depth.
+fn behind_hills(place: Place, local: vec3<f32>, footprint_m: f32) -> f32 {
+    let length_m = min((height_field.height_m - place.altitude_m) / max(local.z, 1e-3), FARTHEST_M);
+    var visible = 1.0;
+    for (var i = 0u; i < HILL_STEPS && length_m > 0.0; i++) {
+        let share = (f32(i) + 0.5) / f32(HILL_STEPS);
+        let t_m = length_m * share * share;
+        let altitude_m = place.altitude_m + t_m * (local.z + 0.5 * t_m / atmosphere.radius_m);
+        let gap_m = altitude_m - height_below(place.map + local.xy * t_m, footprint_m, altitude_m);
+        visible = min(visible, 0.5 + 0.5 * gap_m / max(PENUMBRA_RAD * t_m, footprint_m));
+    }
+    return -log(clamp(visible, 1e-6, 1.0));
+}
+#endif
+
+fn depth_to_light(index: u32, place: Place, light: u32) -> vec3<f32> {
+    let toward = observer.lights[light].direction;
+    let local = local_direction(place.map, toward);
+    var depth = vec3<f32>(0.0);
+    for (var i = 0u; i < FOG_COUNT; i++) {
+        depth += volumes[i].extinction_per_m * fog_length_m(i, place, local, FARTHEST_M, SAMPLES);
+    }
+    for (var i = 0u; i < volumes[index].occluder_count; i++) {
+        let other = local_lists[volumes[index].occluders_first + i];
+        depth += volumes[other].extinction_per_m * local_length_m(other, place.p, toward, FARTHEST_M, SAMPLES);
+    }
+    return depth;
+}
+
+fn vertical(index: u32, place: Place, upward: f32) -> vec2<f32> {
+    let direction = vec3<f32>(0.0, 0.0, upward);
+    let weights = vec3<f32>(1.0 / 3.0);
+    var depths = vec2<f32>(0.0);
+    for (var i = 0u; i < FOG_COUNT; i++) {
+        let depth = dot(volumes[i].extinction_per_m, weights) * fog_length_m(i, place, direction, FARTHEST_M, SAMPLES);
+        depths += depth * vec2<f32>(volumes[i].similarity, volumes[i].backward);
+    }
+    if index >= FOG_COUNT {
+        let length_m = local_length_m(index, place.p, direction, FARTHEST_M, SAMPLES);
+        depths += dot(volumes[index].extinction_per_m, weights) * length_m * vec2<f32>(volumes[index].similarity, volumes[index].backward);
+    }
+    return depths;
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
+    let block = texel.y / CELLS * COLUMNS + texel.x / CELLS;
+    let is_fog = block < FOG_COUNT * FOG_LEVELS;
+    let index = select(block - FOG_COUNT * (FOG_LEVELS - 1u), block / FOG_LEVELS, is_fog);
+    if any(texel >= textureDimensions(volume_light_image)) || index >= VOLUME_COUNT {
+        return;
+    }
+    let light = texel.z / CELLS;
+    let share = (vec3<f32>(texel % CELLS) + 0.5) / f32(CELLS);
+    var place = place_in_block(index, block % FOG_LEVELS, share);
+    if !is_fog {
+        place = place_of(place.p);
+    }
+    var others = 0.0;
+#ifdef CLOUDS
+    others -= log(max(daylight_of(light, place.map, place.altitude_m).straight, 1e-20));
+#endif
+#ifdef SURFACE_HILLS
+    let local = local_direction(place.map, observer.lights[light].direction);
+    others += behind_hills(place, local, 20.0);
+#endif
+    let depth = depth_to_light(index, place, light);
+    textureStore(volume_light_image, texel, min(vec4<f32>(depth, others), vec4<f32>(DARK)));
+    if light == 0u {
+        let depths = vec4<f32>(vertical(index, place, 1.0), vertical(index, place, -1.0));
+        textureStore(volume_sky_image, texel, min(depths, vec4<f32>(DARK)));
+    }
+}

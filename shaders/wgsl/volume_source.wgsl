@@ -1,0 +1,188 @@
+#define_import_path welkin::volume_source
+// Light that matter in fog and local volumes sends towards the observer.
+//
+// Legend
+//   term      one summand of a light's part: P_k(nu) int b e^(-a_k (tau_light + tau_view)) ds. Bands of near-forward light as
+//             in welkin::cloud_source; a_k per band, as a coloured volume absorbs
+//   stretch   what a step does to light: depth before it and in it, of all media
+//
+// Light scattered many times is that of an even slab in fog (welkin::slab); in a local volume what is scattered once
+// escapes with the probability 1 / (1 + x), x its mean chord in optical depths (Wigner's rational approximation), or is
+// scattered again.
+//
+// Definitions: VOLUME_TERM_COUNT, VOLUME_ORDERS (light scattered more than once belongs in the picture), LIT, LIGHT_COUNT,
+// LOCAL_LIGHT_COUNT.
+
+#import welkin::atmosphere::atmosphere
+#import welkin::cloud_daylight::{light_in_air, surroundings, Surroundings}
+#import welkin::local_light::{cone_share, depth_to_local_light, local_lights}
+#import welkin::observer::{observer, LIGHT_COUNT}
+#import welkin::phase::{lobe_per_sr, PhaseLobe}
+#import welkin::slab::{slab_light, Slab}
+#import welkin::tables::table_sampler
+#import welkin::volume_field::{place_of, volumes, Place, FOG_COUNT}
+#import welkin::volume_grid::{block_uvw, spot_of, Spot}
+
+const TERM_COUNT: u32 = #{VOLUME_TERM_COUNT}u;
+const TERM_LOBES: u32 = 4u;
+const FOUR_PI: f32 = 12.5663706;
+
+struct VolumeTerm {
+    // a_k.
+    attenuation: vec3<f32>,
+    padding: f32,
+    // P_k; scales may be negative.
+    lobes: array<PhaseLobe, TERM_LOBES>,
+}
+
+// Volume by volume.
+@group(1) @binding(47) var<storage, read> volume_terms: array<VolumeTerm>;
+@group(1) @binding(42) var volume_light_image: texture_3d<f32>;
+@group(1) @binding(43) var volume_sky_image: texture_3d<f32>;
+
+// A step along a view ray.
+struct Stretch {
+    view: vec3<f32>,
+    origin: vec3<f32>,
+    from_m: f32,
+    step_m: f32,
+    // Optical depth of all media but the air before the step, and in it.
+    before: vec3<f32>,
+    within: vec3<f32>,
+}
+
+// Matter of one volume in a step: the point that stands for it, and its density there.
+struct Piece {
+    index: u32,
+    density: f32,
+    place: Place,
+}
+
+fn term_per_sr(index: u32, term: u32, nu: f32) -> f32 {
+    var sum = 0.0;
+    for (var i = 0u; i < TERM_LOBES; i++) {
+        sum += lobe_per_sr(volume_terms[index * TERM_COUNT + term].lobes[i], nu);
+    }
+    return sum;
+}
+
+// (1 - e^-x) / x.
+fn mean_through(x: vec3<f32>) -> vec3<f32> {
+    let thin = 1.0 - x * (0.5 - x / 6.0);
+    return select((1.0 - exp(-x)) / x, thin, x < vec3<f32>(1e-2));
+}
+
+// Mean of e^(-a tau) over a step.
+fn seen(stretch: Stretch, attenuation: vec3<f32>) -> vec3<f32> {
+    return exp(-attenuation * stretch.before) * mean_through(attenuation * stretch.within);
+}
+
+// What media leave of the sky above and below a place in a local volume.
+fn sky_share(depths: vec4<f32>) -> vec2<f32> {
+    return 1.0 / (1.0 + 0.75 * depths.yw);
+}
+
+#ifdef VOLUME_ORDERS
+// Radiance times b of light that a directional light and the sky have sent into a volume and that has been scattered since.
+fn diffuse_source(piece: Piece, light: u32, view: vec3<f32>, arriving: vec3<f32>, around: Surroundings, mu_s: f32, depths: vec4<f32>, beam: vec4<f32>) -> vec3<f32> {
+    let volume = volumes[piece.index];
+    if piece.index < FOG_COUNT {
+        let cloudless = exp(-beam.a);
+        let slab = Slab(
+            max(mu_s, 0.0) * arriving * cloudless, max(mu_s, 0.02),
+            3.14159265 * around.above, volume.reduced_cosine,
+            atmosphere.ground_albedo, depths.x + depths.z
+        );
+        let field = slab_light(slab, depths.x);
+        // Light goes on as it went: more of it comes from where the net flux comes from.
+        let forward = volume.reduced_cosine * 3.0 / FOUR_PI * field.upward * -view.z;
+        return max(field.mean_radiance + forward, vec3<f32>(0.0)) * volume.similarity;
+    }
+    let mean_depth = dot(beam.rgb, vec3<f32>(1.0 / 3.0));
+    let left = exp(-beam.a) / (1.0 + 0.75 * volume.backward * mean_depth);
+    let share = sky_share(depths);
+    let from_sky = 0.5 * (around.above * share.x + around.below * share.y);
+    return volume.similarity * (volume.again * arriving * left / FOUR_PI + from_sky);
+}
+#endif
+
+// Radiance that directional lights and the sky bring, per density and metre, before the air.
+fn from_lights(piece: Piece, stretch: Stretch) -> vec3<f32> {
+    let spot = spot_of(piece.index, piece.place);
+    let up = normalize(vec3<f32>(piece.place.p.xy, piece.place.p.z + atmosphere.radius_m));
+    let depths = textureSampleLevel(volume_sky_image, table_sampler, block_uvw(spot.block, spot.share, 0u, 1u), 0.0);
+    var radiance = vec3<f32>(0.0);
+    for (var light = 0u; light < LIGHT_COUNT; light++) {
+        let uvw = block_uvw(spot.block, spot.share, light, LIGHT_COUNT);
+        let beam = textureSampleLevel(volume_light_image, table_sampler, uvw, 0.0);
+        let mu_s = dot(up, observer.lights[light].direction);
+        let arriving = light_in_air(light, piece.place.altitude_m, mu_s);
+        let nu = clamp(dot(stretch.view, observer.lights[light].direction), -1.0, 1.0);
+        for (var k = 0u; k < TERM_COUNT; k++) {
+            let a = volume_terms[piece.index * TERM_COUNT + k].attenuation;
+            radiance += term_per_sr(piece.index, k, nu) * arriving * exp(-a * beam.rgb - beam.a) * seen(stretch, a);
+        }
+#ifdef VOLUME_ORDERS
+        let around = surroundings(piece.place.altitude_m, mu_s, observer.lights[light].irradiance);
+        let q = vec3<f32>(volumes[piece.index].similarity);
+        let source = diffuse_source(piece, light, stretch.view, arriving, around, mu_s, depths, beam);
+        radiance += source * seen(stretch, q);
+        // Light from behind that is scattered by small angles only.
+        let behind = select(around.below, around.above, dot(stretch.view, up) > 0.0);
+        radiance += behind * (seen(stretch, vec3<f32>(1.0)) - q * seen(stretch, q));
+#endif
+    }
+    return radiance;
+}
+
+// Angle at a local light over which one sample stands for a step, rad.
+const LIGHT_ANGLE_RAD: f32 = 0.2;
+const MOST_LIGHT_SAMPLES: u32 = 8u;
+
+// The same of one local light: the inverse square of the distance is integrated along the step in closed form, as an angle
+// at the light (Kulla & Fajardo 2012, section 3).
+fn from_local_light(light: u32, piece: Piece, stretch: Stretch) -> vec3<f32> {
+    let position_m = local_lights[light].position_m;
+    let nearest_m = dot(position_m - stretch.origin, stretch.view);
+    let off = stretch.origin + stretch.view * nearest_m - position_m;
+    let off_m = sqrt(dot(off, off) + local_lights[light].size_squared + 1e-6);
+    let first = (stretch.from_m - nearest_m) / off_m;
+    let last = first + stretch.step_m / off_m;
+    let reach_m = local_lights[light].reach_m;
+    let closest = off_m * off_m + pow(max(max(first, -last), 0.0) * off_m, 2.0);
+    if closest >= reach_m * reach_m {
+        return vec3<f32>(0.0);
+    }
+    let from_rad = atan(first);
+    let opening_rad = max(atan(last) - from_rad, 0.0);
+    let count = u32(clamp(ceil(opening_rad / LIGHT_ANGLE_RAD), 1.0, f32(MOST_LIGHT_SAMPLES)));
+    let per_sample = opening_rad / (f32(count) * off_m * stretch.step_m);
+    var radiance = vec3<f32>(0.0);
+    for (var i = 0u; i < count; i++) {
+        let t_m = clamp(
+            nearest_m + off_m * tan(from_rad + opening_rad * (f32(i) + 0.5) / f32(count)),
+            stretch.from_m, stretch.from_m + stretch.step_m
+        );
+        let place = place_of(stretch.origin + stretch.view * t_m);
+        let offset = position_m - place.p;
+        let distance_m = max(length(offset), 1e-6);
+        let toward = offset / distance_m;
+        let nu = clamp(dot(stretch.view, toward), -1.0, 1.0);
+        let depth = depth_to_local_light(light, place, toward, distance_m)
+            + stretch.before + stretch.within * ((t_m - stretch.from_m) / stretch.step_m);
+        let arriving = local_lights[light].intensity * cone_share(light, -toward) * per_sample;
+        for (var k = 0u; k < TERM_COUNT; k++) {
+            let a = volume_terms[piece.index * TERM_COUNT + k].attenuation;
+            radiance += term_per_sr(piece.index, k, nu) * arriving * exp(-a * depth);
+        }
+    }
+#ifdef VOLUME_ORDERS
+    // int dt / distance over the step.
+    let q = vec3<f32>(volumes[piece.index].similarity);
+    let distance_m = sqrt(off_m * off_m + pow((0.5 * (first + last)) * off_m, 2.0));
+    let per_distance = (asinh(last) - asinh(first)) / stretch.step_m;
+    let mean = local_lights[light].diffuse * exp(-local_lights[light].decay_per_m * distance_m) * per_distance;
+    radiance += volumes[piece.index].similarity * mean * seen(stretch, q);
+#endif
+    return radiance;
+}

@@ -1,0 +1,228 @@
+//! Point and spot lights, and glowing volumes as lights of what is around them, as the shaders read them.
+
+use std::f64::consts::PI;
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+use welkin_lut::volume::{Volume, VolumeField, VolumeForm, VolumeParameters};
+use welkin_lut::{BAND_COUNT, Bands};
+
+use super::local_lists::LocalLists;
+use super::vec3;
+use super::volumes::mean_chord_m;
+use crate::plan::Facts;
+use crate::scene::Cone;
+
+/// WGSL `LocalLight`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LocalLightBlock {
+    pub(super) position_m: [f32; 3],
+    pub(super) reach_m: f32,
+    pub(super) intensity: [f32; 3],
+    pub(super) size_squared: f32,
+    pub(super) axis: [f32; 3],
+    pub(super) inner_cosine: f32,
+    pub(super) diffuse: [f32; 3],
+    pub(super) outer_cosine: f32,
+    pub(super) decay_per_m: [f32; 3],
+    pub(super) lists_first: u32,
+    pub(super) list_count: u32,
+    pub(super) padding: [u32; 3],
+}
+
+/// What shines from a place, and how far that counts.
+pub struct Lamp {
+    /// Where, m.
+    pub position_m: DVec3,
+    /// Farther away it is left out, m.
+    pub reach_m: f64,
+    intensity: Bands,
+    cone: Option<Cone>,
+    /// Radius of what shines, m.
+    size_m: f64,
+}
+
+/// Matter where a lamp stands, without billows.
+struct Surroundings {
+    scattering_per_m: Bands,
+    absorption_per_m: Bands,
+    /// The share of scattering that turns light back.
+    backward: f64,
+    /// Of light that was scattered once, the share that is scattered again before it leaves.
+    kept: f64,
+}
+
+/// Farthest that a light in clear air reaches, in distances to its neighbour where that is all that limits it, m.
+const LONGEST_REACH_M: f64 = 1e5;
+
+/// Lights and glowing volumes of a scene.
+pub fn lamps(facts: &Facts) -> Vec<Lamp> {
+    let lights = facts.local_lights.iter().map(|light| Lamp {
+        position_m: light.position_m,
+        reach_m: LONGEST_REACH_M,
+        intensity: light.intensity,
+        cone: light.cone,
+        size_m: 0.0,
+    });
+    let mut all: Vec<_> = lights.chain(facts.volumes.iter().filter_map(|volume| glow(volume))).collect();
+    let positions: Vec<_> = all.iter().map(|lamp| lamp.position_m).collect();
+    for (index, lamp) in all.iter_mut().enumerate() {
+        let others = positions.iter().enumerate().filter(|(other, _)| *other != index);
+        let nearest_m = others.map(|(_, other)| other.distance(lamp.position_m)).fold(f64::INFINITY, f64::min);
+        let around = surroundings(facts, lamp.position_m);
+        lamp.reach_m = reach_m(nearest_m.max(1.0), &around, f64::from(facts.settings.volumes.lamp_share));
+    }
+    all
+}
+
+/// Whether a local volume gives off light.
+fn is_glowing(volume: &Volume) -> bool {
+    volume.altitudes_m().is_none() && volume.emission_per_m.iter().any(|&e| e > 0.0)
+}
+
+/// A glowing volume as seen by what is around it: all of its light, from its middle, but for what it absorbs itself.
+fn glow(volume: &Volume) -> Option<Lamp> {
+    let (VolumeForm::Box { centre_m, size_m: [x, y, z], .. }
+    | VolumeForm::Ellipsoid { centre_m, size_m: [x, y, z], .. }) = volume.form
+    else {
+        return None;
+    };
+    if !is_glowing(volume) {
+        return None;
+    }
+    let filled = if matches!(volume.form, VolumeForm::Box { .. }) { 1.0 } else { PI / 6.0 };
+    let content_m3 = x * y * z * filled * mean_density(volume);
+    let chord_m = mean_chord_m(&volume.form);
+    Some(Lamp {
+        position_m: DVec3::from_array(centre_m),
+        reach_m: LONGEST_REACH_M,
+        intensity: std::array::from_fn(|band| {
+            volume.emission_per_m[band] * content_m3 / (1.0 + volume.absorption_per_m[band] * chord_m)
+        }),
+        cone: None,
+        size_m: 0.5 * (x * y * z).cbrt(),
+    })
+}
+
+/// Mean density over the volume's box, or over the ellipsoid in it.
+fn mean_density(volume: &Volume) -> f64 {
+    const POINTS: usize = 12;
+    if volume.edge == 0.0 && volume.noise.is_none() && volume.grid.is_none() {
+        return 1.0;
+    }
+    let parameters = VolumeParameters::new(volume, 0.0);
+    let field = VolumeField::new(volume, parameters);
+    let (mut sum, mut inside) = (0.0, 0.0);
+    for i in 0..POINTS.pow(3) {
+        let share = [i, i / POINTS, i / (POINTS * POINTS)].map(|i| ((i % POINTS) as f64 + 0.5) / POINTS as f64 - 0.5);
+        let q: [f64; 3] = std::array::from_fn(|axis| 2.0 * share[axis] * f64::from(parameters.half_size_m[axis]));
+        let [cos, sin] = parameters.turn.map(f64::from);
+        let p = [q[0] * cos + q[1] * sin, q[1] * cos - q[0] * sin, q[2]];
+        let p: [f64; 3] = std::array::from_fn(|axis| p[axis] + f64::from(parameters.centre_m[axis]));
+        let within = matches!(volume.form, VolumeForm::Box { .. }) || share.iter().map(|s| s * s).sum::<f64>() <= 0.25;
+        if within {
+            sum += field.density(p, [0.0; 2], 0.0);
+            inside += 1.0;
+        }
+    }
+    sum / f64::max(inside, 1.0)
+}
+
+fn surroundings(facts: &Facts, at: DVec3) -> Surroundings {
+    let mut all = Surroundings {
+        scattering_per_m: [0.0; BAND_COUNT],
+        absorption_per_m: [0.0; BAND_COUNT],
+        backward: 1.0,
+        kept: 0.0,
+    };
+    let (mut turned, mut scattered) = (0.0, 0.0);
+    for volume in &facts.volumes {
+        let even = Volume { noise: None, ..(*volume).clone() };
+        let density =
+            VolumeField::new(&even, VolumeParameters::new(&even, 0.0)).density(at.to_array(), [at.x, at.y], at.z)
+                * volume.noise.map_or(1.0, |noise| 1.0 - 0.4 * noise.strength);
+        let backward = 1.0 - volume.phase.mean_cosine();
+        for band in 0..BAND_COUNT {
+            all.scattering_per_m[band] += density * volume.scattering_per_m[band];
+            all.absorption_per_m[band] += density * volume.absorption_per_m[band];
+        }
+        let mean = density * volume.scattering_per_m.iter().sum::<f64>() / BAND_COUNT as f64;
+        scattered += mean;
+        turned += mean * backward;
+        // Across a bank of fog, as its matter at the lamp and its height say; across a volume, its mean chord.
+        let chord_m = volume.altitudes_m().map_or(mean_chord_m(&volume.form), |[bottom_m, top_m]| {
+            let scale_m = f64::from(VolumeParameters::new(volume, 0.0).per_scale_height).recip();
+            2.0 * if scale_m.is_finite() { scale_m } else { top_m - bottom_m }
+        });
+        let x = mean * backward * chord_m;
+        all.kept = f64::max(all.kept, x / (1.0 + x));
+    }
+    if scattered > 0.0 {
+        all.backward = turned / scattered;
+    }
+    all
+}
+
+/// Where a lamp brings one in `share` of what it brings to its neighbour: e^(-c d) / d² falls that far.
+fn reach_m(neighbour_m: f64, around: &Surroundings, share: f64) -> f64 {
+    let extinction = (0..BAND_COUNT)
+        .map(|band| around.absorption_per_m[band] + around.backward * around.scattering_per_m[band])
+        .fold(f64::INFINITY, f64::min);
+    let falls = |d: f64| extinction * (d - neighbour_m) + 2.0 * (d / neighbour_m).ln() >= share.ln();
+    let (mut near, mut far) = (neighbour_m.min(LONGEST_REACH_M), LONGEST_REACH_M);
+    for _ in 0..60 {
+        let middle = 0.5 * (near + far);
+        if falls(middle) { far = middle } else { near = middle }
+    }
+    far
+}
+
+impl LocalLightBlock {
+    fn new(facts: &Facts, lamp: &Lamp, list: std::ops::Range<usize>) -> Self {
+        let around = surroundings(facts, lamp.position_m);
+        let transport = around.scattering_per_m.map(|b| b * around.backward);
+        let (axis, inner, outer) = match lamp.cone {
+            Some(cone) => (cone.axis.to_vector(), cone.inner_cosine, cone.outer_cosine),
+            None => (DVec3::Z, 0.0, -2.0),
+        };
+        // A cone's light, once scattered, is that of a point with the same flux.
+        let solid_share = if lamp.cone.is_some() { 0.5 * (1.0 - 0.5 * (inner + outer)) } else { 1.0 };
+        // Diffusion from a point: 3 c' / (4 π d) of its intensity (Ishimaru 1978, eq. 9-41), over 4 π of directions.
+        let diffuse: Bands = std::array::from_fn(|band| {
+            lamp.intensity[band] * solid_share * around.kept * 3.0 * transport[band] / (4.0 * PI)
+        });
+        let decay: Bands = std::array::from_fn(|band| {
+            let a = around.absorption_per_m[band];
+            (3.0 * a * (a + transport[band])).sqrt()
+        });
+        Self {
+            position_m: lamp.position_m.as_vec3().to_array(),
+            reach_m: lamp.reach_m as f32,
+            intensity: vec3(lamp.intensity),
+            size_squared: (lamp.size_m * lamp.size_m) as f32,
+            axis: axis.as_vec3().to_array(),
+            inner_cosine: inner as f32,
+            diffuse: vec3(diffuse),
+            outer_cosine: outer as f32,
+            decay_per_m: vec3(decay),
+            lists_first: list.start as u32,
+            list_count: list.len() as u32,
+            padding: [0; 3],
+        }
+    }
+}
+
+/// WGSL `array<LocalLight>`; one that does not shine where there is none.
+pub fn local_light_blocks(facts: &Facts, lamps: &[Lamp], lists: &LocalLists) -> Vec<LocalLightBlock> {
+    let numbered = lamps.iter().enumerate();
+    let mut blocks: Vec<_> =
+        numbered.map(|(index, lamp)| LocalLightBlock::new(facts, lamp, lists.of_light(index))).collect();
+    blocks.resize(blocks.len().max(1), LocalLightBlock::zeroed());
+    blocks
+}
+
+/// How many lights there are for shaders to loop over.
+pub fn local_light_count(facts: &Facts) -> u32 {
+    (facts.local_lights.len() + facts.volumes.iter().filter(|volume| is_glowing(volume)).count()) as u32
+}

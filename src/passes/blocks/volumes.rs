@@ -1,0 +1,180 @@
+//! Fog and local volumes as the shaders read them.
+
+use bytemuck::{Pod, Zeroable};
+use welkin_lut::volume::{Volume, VolumeForm, VolumeParameters};
+use welkin_lut::{BAND_COUNT, Bands, PhaseFunction};
+
+use super::atmosphere::{PhaseLobeBlock, scaled_lobes};
+use super::local_lists::LocalLists;
+use super::vec3;
+use crate::passes::ordinates::coefficients::{BAND_ASYMMETRY, band_attenuations, reduced_cosine};
+use crate::plan::{CloudScattering, Facts};
+
+/// Lobes that a term has room for: WGSL `TERM_LOBES`.
+const TERM_LOBES: usize = 4;
+
+/// WGSL `Volume`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct VolumeBlock {
+    pub(super) centre_m: [f32; 3],
+    pub(super) kind: u32,
+    pub(super) half_size_m: [f32; 3],
+    pub(super) per_edge: f32,
+    pub(super) noise_offset: [f32; 3],
+    pub(super) noise_per_m: f32,
+    pub(super) scattering_per_m: [f32; 3],
+    pub(super) noise_strength: f32,
+    pub(super) extinction_per_m: [f32; 3],
+    pub(super) detail_m: f32,
+    pub(super) emission_per_m: [f32; 3],
+    pub(super) per_scale_height: f32,
+    pub(super) turn: [f32; 2],
+    pub(super) bottom_m: f32,
+    pub(super) top_m: f32,
+    pub(super) grid_size: [u32; 3],
+    pub(super) grid_first: u32,
+    pub(super) similarity: f32,
+    pub(super) reduced_cosine: f32,
+    pub(super) backward: f32,
+    pub(super) is_even: u32,
+    pub(super) again: [f32; 3],
+    pub(super) first_block: u32,
+    pub(super) occluders_first: u32,
+    pub(super) occluder_count: u32,
+    pub(super) padding: [u32; 2],
+}
+
+/// WGSL `VolumeTerm`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct VolumeTermBlock {
+    pub(super) attenuation: [f32; 3],
+    pub(super) padding: f32,
+    pub(super) lobes: [PhaseLobeBlock; TERM_LOBES],
+}
+
+/// Mean chord of a local form, 4 V / S (Cauchy), m; that of an ellipsoid for the sphere of its volume.
+pub(super) fn mean_chord_m(form: &VolumeForm) -> f64 {
+    match *form {
+        VolumeForm::Box { size_m: [x, y, z], .. } => 2.0 * x * y * z / (x * y + y * z + z * x),
+        VolumeForm::Ellipsoid { size_m: [x, y, z], .. } => 2.0 / 3.0 * (x * y * z).cbrt(),
+        VolumeForm::Fog { .. } => 0.0,
+    }
+}
+
+/// Of light that was scattered once in a volume, what is scattered again and again, over the light: x / (1 + (1 - W) x)
+/// with x the mean chord in optical depths of the similar medium.
+fn again(volume: &Volume) -> Bands {
+    let chord_m = mean_chord_m(&volume.form);
+    let forward = volume.phase.legendre_moment(2).max(0.0);
+    let extinction = volume.extinction_per_m();
+    std::array::from_fn(|band| {
+        let turned = (1.0 - forward) * volume.scattering_per_m[band];
+        let whole = extinction[band] - forward * volume.scattering_per_m[band];
+        if whole <= 0.0 {
+            return 0.0;
+        }
+        let x = whole * chord_m;
+        turned / whole * x / (1.0 + (1.0 - turned / whole) * x)
+    })
+}
+
+impl VolumeBlock {
+    fn new(facts: &Facts, index: usize, lists: &LocalLists, grid_first: u32) -> Self {
+        let volume = facts.volumes[index];
+        let p = VolumeParameters::new(volume, facts.scene.time_s);
+        let [g, f] = [1, 2].map(|degree| volume.phase.legendre_moment(degree));
+        let fog = facts.fog_count() as usize;
+        let levels = facts.settings.volumes.fog_levels as usize;
+        let first_block = if index < fog { index * levels } else { fog * levels + index - fog };
+        let is_even = volume.edge == 0.0 && p.noise_strength == 0.0 && volume.grid.is_none() && index >= fog;
+        let occluders = lists.of_volume(index);
+        Self {
+            centre_m: p.centre_m,
+            kind: p.kind as u32,
+            half_size_m: p.half_size_m,
+            per_edge: p.per_edge,
+            noise_offset: p.noise_offset,
+            noise_per_m: p.noise_per_m,
+            scattering_per_m: vec3(volume.scattering_per_m),
+            noise_strength: p.noise_strength,
+            extinction_per_m: vec3(volume.extinction_per_m()),
+            detail_m: volume.detail_m() as f32,
+            emission_per_m: vec3(volume.emission_per_m),
+            per_scale_height: p.per_scale_height,
+            turn: p.turn,
+            bottom_m: p.bottom_m,
+            top_m: p.top_m,
+            grid_size: volume.grid.as_ref().map_or([0; 3], |grid| grid.size().map(|n| n as u32)),
+            grid_first,
+            similarity: (1.0 - f) as f32,
+            reduced_cosine: reduced_cosine(&volume.phase) as f32,
+            backward: (1.0 - g) as f32,
+            is_even: u32::from(is_even),
+            again: vec3(again(volume)),
+            first_block: first_block as u32,
+            occluders_first: occluders.start as u32,
+            occluder_count: occluders.len() as u32,
+            padding: [0; 2],
+        }
+    }
+}
+
+/// WGSL `array<Volume>`, with one that is nothing where there is none.
+pub fn volume_blocks(facts: &Facts, lists: &LocalLists) -> Vec<VolumeBlock> {
+    let mut first = 0;
+    let mut blocks = Vec::with_capacity(facts.volumes.len().max(1));
+    for (index, volume) in facts.volumes.iter().enumerate() {
+        blocks.push(VolumeBlock::new(facts, index, lists, first));
+        first += volume.grid.as_ref().map_or(0, |grid| grid.samples().len() as u32);
+    }
+    blocks.resize(blocks.len().max(1), VolumeBlock::zeroed());
+    blocks
+}
+
+/// Samples of all grids, one volume after the other.
+pub fn volume_samples(facts: &Facts) -> Vec<f32> {
+    let grids = facts.volumes.iter().filter_map(|volume| volume.grid.as_ref());
+    let mut samples: Vec<f32> = grids.flat_map(|grid| grid.samples().iter().copied()).collect();
+    samples.resize(samples.len().max(1), 0.0);
+    samples
+}
+
+impl VolumeTermBlock {
+    fn new(attenuation: Bands, phase: &PhaseFunction, parts: &[(f64, f64)]) -> Self {
+        let mut lobes = [PhaseLobeBlock::ABSENT; TERM_LOBES];
+        let given = parts.iter().flat_map(|&(strength, factor)| {
+            scaled_lobes(phase, factor).into_iter().map(move |lobe| lobe.times(strength))
+        });
+        lobes.iter_mut().zip(given).for_each(|(slot, lobe)| *slot = lobe);
+        Self { attenuation: vec3(attenuation), padding: 0.0, lobes }
+    }
+}
+
+/// Terms of each volume: the light that was scattered once, or two bands of near-forward light as in clouds.
+pub fn volume_term_count(facts: &Facts) -> u32 {
+    if facts.cloud_scattering() == CloudScattering::Single { 1 } else { 2 }
+}
+
+/// WGSL `array<VolumeTerm>`: volume by volume.
+pub fn volume_terms(facts: &Facts) -> Vec<VolumeTermBlock> {
+    let terms = |volume: &Volume| {
+        let phase = if volume.scatters() { &volume.phase } else { &PhaseFunction::Isotropic };
+        if volume_term_count(facts) == 1 {
+            return vec![VolumeTermBlock::new([1.0; BAND_COUNT], phase, &[(1.0, 1.0)])];
+        }
+        let extinction = volume.extinction_per_m();
+        let by_band: [[f64; 2]; BAND_COUNT] = std::array::from_fn(|band| {
+            let albedo = if extinction[band] > 0.0 { volume.scattering_per_m[band] / extinction[band] } else { 0.0 };
+            band_attenuations(phase, albedo)
+        });
+        vec![
+            VolumeTermBlock::new(by_band.map(|[sharp, _]| sharp), phase, &[(1.0, 1.0), (-1.0, BAND_ASYMMETRY)]),
+            VolumeTermBlock::new(by_band.map(|[_, wide]| wide), phase, &[(1.0, BAND_ASYMMETRY)]),
+        ]
+    };
+    let mut all: Vec<_> = facts.volumes.iter().flat_map(|volume| terms(volume)).collect();
+    all.resize(all.len().max(1), VolumeTermBlock::zeroed());
+    all
+}

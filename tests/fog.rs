@@ -1,0 +1,153 @@
+//! Fog, local volumes and local lights: exact facts, in the reference and in real time.
+
+mod common;
+
+use std::path::Path;
+
+use glam::DVec3;
+use welkin::frame::Frame;
+use welkin::gpu::{DeviceRequest, Validation};
+use welkin::plan::{CloudScattering, Decision, Outputs, Plan, Quality, Settings};
+use welkin::reference::single::first_order;
+use welkin::reference::{World, transport};
+use welkin::renderer::{Rendered, Renderer};
+use welkin::scene::Scene;
+
+const CAPTURE: Outputs = Outputs { capture: true, picture: false };
+const PASSES: [&str; 3] = ["volume_light", "local_clusters", "local_media"];
+
+/// Empty space over black ground, without light, and what is said.
+fn dark(text: &str) -> Scene {
+    let rest = "preset = \"earth\"\nmedium = []\nplanet.ground_albedo = 0\nsun = { elevation_deg = 40, azimuth_deg = 60, irradiance = 0 }\n\
+        camera = { altitude_m = 2, elevation_deg = 12, azimuth_deg = 0, width = 24, height = 16 }\n";
+    Scene::parse(&format!("{rest}{text}"), Path::new("fog.toml")).unwrap()
+}
+
+fn render(scenes: &[(Scene, Settings)]) -> Vec<Rendered> {
+    let _alone = common::alone();
+    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
+    let mut renderer = Renderer::new(&request).unwrap();
+    let log = renderer.gpu().validation_log();
+    let of = |(scene, settings): &(Scene, Settings)| renderer.render(scene, *settings, CAPTURE).unwrap();
+    let rendered = scenes.iter().map(of).collect();
+    drop(renderer);
+    assert!(log.messages().is_empty(), "{:?}", log.messages());
+    rendered
+}
+
+fn low() -> Settings {
+    Settings::of(Quality::Low)
+}
+
+/// For each pixel, in order: where it looks from and to.
+fn views(scene: &Scene) -> Vec<(DVec3, DVec3)> {
+    let camera = &scene.camera;
+    let eye = DVec3::new(0.0, 0.0, camera.altitude_m);
+    let at = |i: u32| camera.direction_through(f64::from(i % camera.width) + 0.5, f64::from(i / camera.width) + 0.5);
+    (0..camera.width * camera.height).map(|i| (eye, at(i))).collect()
+}
+
+const FOG: &str = "[[fog]]\nextinction_per_m = [0.004, 0.006, 0.009]\nprofile.exponential.scale_height_m = 60\n";
+const MIST: &str = "[[volumes]]\nname = \"mist\"\nshape = \"box\"\ncentre_m = [4, 60, 8]\nsize_m = [30, 20, 25]\nturn_deg = 30\n\
+    absorption_per_m = [0.02, 0.05, 0.1]\nemission_per_m = [0.1, 0.2, 0.3]\n";
+const BALL: &str = "[[volumes]]\nname = \"ball\"\nshape = \"ellipsoid\"\ncentre_m = [-9, 66, 12]\nsize_m = [30, 40, 22]\n\
+    absorption_per_m = [0.01, 0.03, 0.02]\n";
+
+#[test]
+fn fog_and_volumes_without_light_let_through_what_beers_law_says() {
+    let scene = dark(&format!("{FOG}{MIST}{BALL}"));
+    let frame = &render(&[(scene.clone(), low())])[0].frame;
+    let world = World::from_scene(&scene);
+    let (mut hidden, mut worst, mut of_another) = (0, 0.0_f64, 0.0_f64);
+    let denser = World::from_scene(&dark(&format!("{FOG}{MIST}{}", BALL.replace("0.03", "0.031"))));
+    for (pixel, (eye, view)) in views(&scene).into_iter().enumerate() {
+        let exact = transport::transmittance(&world, eye, view)[1];
+        let found = f64::from(frame.transmittance[pixel][1]);
+        worst = worst.max((found - exact).abs());
+        of_another = of_another.max((found - transport::transmittance(&denser, eye, view)[1]).abs());
+        hidden += usize::from(exact < 0.5);
+    }
+    assert!(hidden > 50, "hardly anything is hidden");
+    assert!(worst < 1e-4, "{worst}");
+    // Negative control: a thirtieth more of one volume is seen.
+    assert!(of_another > 1e-3, "{of_another}");
+}
+
+#[test]
+fn a_glowing_volume_alone_shows_its_source_times_its_opacity() {
+    let scene = dark(MIST);
+    let frame = &render(&[(scene.clone(), low())])[0].frame;
+    let mut seen = 0;
+    for (pixel, (eye, view)) in views(&scene).into_iter().enumerate() {
+        let transmittance = transport::transmittance(&World::from_scene(&scene), eye, view);
+        for (band, source) in [0.1 / 0.02, 0.2 / 0.05, 0.3 / 0.1].into_iter().enumerate() {
+            let exact = (1.0 - transmittance[band]) * source;
+            let found = f64::from(frame.radiance[pixel][band]);
+            assert!((found - exact).abs() <= 1e-4 * source, "pixel {pixel}, band {band}: {found} and {exact}");
+            // Negative control: light that the volume does not weaken is another.
+            seen += usize::from(band == 2 && (found + transmittance[band].ln() * source).abs() > 0.1 * source);
+        }
+    }
+    assert!(seen > 20, "{seen}");
+}
+
+#[test]
+fn the_order_of_volumes_and_lights_in_the_file_changes_nothing() {
+    let lamps = "[[light.point]]\nname = \"a\"\nposition_m = [3, 50, 9]\nintensity = 2\n\
+        [[light.spot]]\nname = \"b\"\nposition_m = [-6, 40, 20]\nintensity = 5\nelevation_deg = -80\ninner_deg = 10\nouter_deg = 40\n";
+    let scattering = |volume: &str| format!("{volume}scattering_per_m = 0.03\nphase = \"isotropic\"\n");
+    let (mist, ball) = (scattering(MIST), scattering(BALL));
+    let one = dark(&format!("{FOG}{mist}{ball}{lamps}"));
+    let mut other = dark(&format!("{FOG}{ball}{mist}{lamps}"));
+    other.lights.reverse();
+    let without = dark(&format!("{FOG}{mist}{lamps}"));
+    let frames = render(&[(one, low()), (other, low()), (without, low())]);
+    assert_eq!(frames[0].frame.radiance, frames[1].frame.radiance);
+    assert_eq!(frames[0].frame.transmittance, frames[1].frame.transmittance);
+    assert!(frames[0].frame.radiance != frames[2].frame.radiance, "the ball is seen");
+}
+
+fn of_media(plan: &Plan) -> Vec<(Decision, u64)> {
+    plan.passes.iter().filter(|pass| PASSES.contains(&pass.name)).map(|pass| (pass.decision, pass.bytes)).collect()
+}
+
+#[test]
+fn a_scene_without_fog_volumes_and_lamps_runs_nothing_of_theirs_and_keeps_no_byte() {
+    let nothing = "[[fog]]\nextinction_per_m = 0\nprofile.layer.top_m = 9\n\
+        [[light.point]]\nname = \"off\"\nposition_m = [0, 9, 9]\nintensity = 0\n";
+    for scene in [dark(""), dark(nothing)] {
+        let plan = Renderer::plan(&scene, low(), CAPTURE).unwrap();
+        assert_eq!(of_media(&plan), [(Decision::Skip, 0); 3]);
+    }
+    let plan = Renderer::plan(&dark(FOG), low(), CAPTURE).unwrap();
+    assert!(of_media(&plan).iter().all(|(decision, bytes)| *decision == Decision::Run && *bytes > 0));
+}
+
+/// Root mean square of the relative difference over pixels that see more than a thousandth of the brightest.
+fn difference(frame: &Frame, exact: &[f64]) -> f64 {
+    let most = exact.iter().copied().fold(0.0, f64::max);
+    let pairs = frame.radiance.iter().zip(exact).filter(|(_, exact)| **exact > 1e-3 * most);
+    let squares: Vec<f64> = pairs.map(|(found, exact)| (f64::from(found[1]) / exact - 1.0).powi(2)).collect();
+    assert!(squares.len() > 100, "only {} pixels see light", squares.len());
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+#[test]
+fn light_of_a_lamp_that_fog_scatters_once_is_what_quadrature_finds() {
+    let fog = "[[fog]]\nextinction_per_m = 0.02\nprofile.layer.top_m = 40\n";
+    let lamp = |intensity: f64| {
+        dark(&format!("{fog}[[light.point]]\nname = \"lamp\"\nposition_m = [2, 30, 6]\nintensity = {intensity}\n"))
+    };
+    let mut single = Settings::of(Quality::High);
+    single.clouds.scattering = CloudScattering::Single;
+    let scene = lamp(3.0);
+    let frame = &render(&[(scene.clone(), single)])[0].frame;
+    let exact = |scene: &Scene| -> Vec<f64> {
+        let world = World::from_scene(scene);
+        views(scene).into_iter().map(|(eye, view)| first_order(&world, eye, view, 1e-3).total()[1]).collect()
+    };
+    let rms = difference(frame, &exact(&scene));
+    assert!(rms < 0.02, "{rms}");
+    // Negative control: a lamp a twentieth brighter is told from it.
+    assert!(difference(frame, &exact(&lamp(3.15))) > 0.04);
+}
