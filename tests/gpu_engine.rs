@@ -2,12 +2,12 @@
 
 mod common;
 
-use common::with_gpu;
+use common::{resident_kib, with_gpu};
 use welkin::gpu::{
     AddressMode, BufferKind, Clock, DeviceRequest, Filter, Filtering, Gpu, GpuError, GpuImage, ImageFormat, ImageShape,
     Pipeline, Resource, Validation, Work,
 };
-use welkin_shaders::{Definitions, Shader, Sources};
+use welkin_shaders::{Definitions, Parameters, Shader, Sources};
 
 /// Writes to every texel its own coordinates, times a parameter.
 const COORDINATES: &str = "
@@ -319,6 +319,42 @@ fn more_dispatches_than_one_query_pool_holds_are_all_timed() {
         let times = commands.submit_and_wait().unwrap().times;
         assert_eq!(times.len(), 150);
         assert!(times.iter().all(|time| time.label == "spin" && time.milliseconds < 1e3), "{times:?}");
+    });
+}
+
+#[test]
+fn dispatches_with_ever_new_parameters_leave_nothing_behind() {
+    with_gpu(|gpu| {
+        let sources = Sources::default().with("spin.wgsl", SPIN);
+        let values = gpu.storage_buffer("values", 64 * 4).unwrap();
+        let growth_kib = |parameters| {
+            let shader = Shader::with_parameters(&sources, "spin", &Definitions::new(), parameters).unwrap();
+            let pass = gpu.pipeline(&shader).unwrap();
+            let dispatch = |steps: u32| {
+                let resources = [("values", Resource::Buffer(&values)), ("parameters", Resource::data(&steps))];
+                run(gpu, &pass, &resources, [64, 1, 1]).unwrap();
+            };
+            (1..10).for_each(dispatch);
+            let (before, population) = (resident_kib(), gpu.population());
+            (10..110).for_each(dispatch);
+            assert_eq!(gpu.population(), population, "{parameters:?}");
+            resident_kib().saturating_sub(before)
+        };
+        // Less than what a single compiled shader takes, for each dispatch.
+        let kept = growth_kib(gpu.parameters());
+        assert!(kept < 100 * 20, "{kept} KiB");
+        // Control: the driver of which this was learnt keeps what it compiles for uniform buffers.
+        if gpu.info().driver_version.contains("Mesa 22") {
+            let kept = growth_kib(Parameters::Uniform);
+            assert!(kept > 100 * 40, "uniform buffers: {kept} KiB");
+        }
+        // Control: what is kept is counted.
+        let before = gpu.population();
+        let kept = picture(gpu, "kept", 64, 64);
+        let after = gpu.population();
+        assert_eq!((after.images, after.used_bytes > before.used_bytes), (before.images + 1, true));
+        drop(kept);
+        assert_eq!(gpu.population(), before);
     });
 }
 

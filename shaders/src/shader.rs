@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use naga::ShaderStage;
 use naga::back::spv;
 use naga::compact::{KeepUnused, compact};
 use naga::valid::{ModuleInfo, ValidationFlags, Validator};
+use naga::{AddressSpace, ShaderStage, StorageAccess};
 
 use crate::{Binding, ShaderError, Sources, StructLayout, compose, reflect};
 
@@ -21,6 +21,16 @@ pub enum Definition {
     I32(i32),
     /// An unsigned integer, likewise; `#{NAME}` puts its digits, without the suffix `u`.
     U32(u32),
+}
+
+/// Where a compiled pass finds what its WGSL declares as `var<uniform>`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Parameters {
+    /// In uniform buffers.
+    #[default]
+    Uniform,
+    /// In storage buffers of the same layout that are only read.
+    Storage,
 }
 
 /// A compiled pass.
@@ -56,9 +66,26 @@ impl Shader {
     /// Any [`ShaderError`] but [`ShaderError::Unreadable`]; what is wrong in the WGSL comes with file, line and column,
     /// also where the fault is in an imported module.
     pub fn from_sources(sources: &Sources, pass: &str, definitions: &Definitions) -> Result<Self, ShaderError> {
-        let Entry { file, module, info, structs } = Entry::of(sources, pass, definitions)?;
-        let entry = &module.entry_points[0];
+        Self::with_parameters(sources, pass, definitions, Parameters::Uniform)
+    }
+
+    /// The same with parameters in another kind of buffers.
+    ///
+    /// # Errors
+    /// As [`Shader::from_sources`].
+    pub fn with_parameters(
+        sources: &Sources,
+        pass: &str,
+        definitions: &Definitions,
+        parameters: Parameters,
+    ) -> Result<Self, ShaderError> {
+        let Entry { file, mut module, mut info, structs } = Entry::of(sources, pass, definitions)?;
         let spirv_error = |message: String| ShaderError::Spirv { file: file.clone(), message };
+        if parameters == Parameters::Storage {
+            move_uniforms_to_storage(&mut module);
+            info = validate(&module).map_err(spirv_error)?;
+        }
+        let entry = &module.entry_points[0];
         let uses = info.get_entry_point(0);
         let bindings = reflect::bindings(&file, &module, |variable| !uses[variable].is_empty())?;
         let spirv = spirv(&module, &info).map_err(|error| spirv_error(error.to_string()))?;
@@ -105,6 +132,15 @@ impl Entry {
         compact(&mut module, KeepUnused::No);
         let info = validate(&module).map_err(spirv_error)?;
         Ok(Self { file, module, info, structs })
+    }
+}
+
+/// The layout rules of uniform buffers are the stricter ones, so that nothing moves within them.
+fn move_uniforms_to_storage(module: &mut naga::Module) {
+    for (_, variable) in module.global_variables.iter_mut() {
+        if variable.space == AddressSpace::Uniform {
+            variable.space = AddressSpace::Storage { access: StorageAccess::LOAD };
+        }
     }
 }
 

@@ -7,6 +7,7 @@ use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocation;
 
 use super::barrier::State;
+use super::census::{Counted, Kind};
 use super::context::{Context, lock};
 use super::error::{During, GpuError};
 
@@ -50,6 +51,7 @@ pub(crate) struct BufferInner {
     allocation: Mutex<Option<Allocation>>,
     /// After all that has been submitted.
     pub(crate) state: Mutex<State>,
+    _counted: Counted,
 }
 
 impl BufferInner {
@@ -58,7 +60,10 @@ impl BufferInner {
         use vk::BufferUsageFlags as Usage;
         let limits = &context.info.limits;
         let (usage, location, limit) = match kind {
-            BufferKind::Uniform => (Usage::UNIFORM_BUFFER, MemoryLocation::CpuToGpu, limits.uniform_bytes),
+            // Parameters may be read as either kind: see `Gpu::parameters`.
+            BufferKind::Uniform => {
+                (Usage::UNIFORM_BUFFER | Usage::STORAGE_BUFFER, MemoryLocation::CpuToGpu, limits.uniform_bytes)
+            }
             BufferKind::Storage => (
                 Usage::STORAGE_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST,
                 MemoryLocation::GpuOnly,
@@ -103,6 +108,7 @@ impl BufferInner {
             raw,
             allocation: Mutex::new(None),
             state: Mutex::default(),
+            _counted: context.census.count(Kind::Buffer),
         };
         context.name(raw, name);
         // SAFETY: the buffer is alive; its memory is of the size and type it requires, and is not used by others.

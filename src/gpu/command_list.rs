@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::census::{Counted, Kind};
 use super::context::Context;
 use super::error::{During, GpuError};
 
@@ -13,6 +14,7 @@ pub(crate) struct CommandList {
     pool: vk::CommandPool,
     pub(crate) raw: vk::CommandBuffer,
     fence: vk::Fence,
+    _counted: Counted,
 }
 
 impl CommandList {
@@ -25,7 +27,8 @@ impl CommandList {
         let pool = unsafe { device.create_command_pool(&info, None) }.during("vkCreateCommandPool")?;
         // From here on, an early return destroys what there is.
         let (raw, fence) = (vk::CommandBuffer::null(), vk::Fence::null());
-        let mut list = Self { context: context.clone(), pool, raw, fence };
+        let counted = context.census.count(Kind::CommandList);
+        let mut list = Self { context: context.clone(), pool, raw, fence, _counted: counted };
         let info = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
         // SAFETY: the pool is alive.
         let buffers = unsafe { device.allocate_command_buffers(&info) }.during("vkAllocateCommandBuffers")?;

@@ -7,6 +7,7 @@ use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
 use gpu_allocator::{AllocationSizes, MemoryLocation};
 
+use super::census::{Census, Population};
 use super::device::{Candidate, DeviceInfo};
 use super::error::{During, GpuError};
 use super::instance::Instance;
@@ -23,6 +24,7 @@ pub(crate) struct Context {
     /// `None` only while the device is being destroyed.
     allocator: Mutex<Option<Allocator>>,
     debug: Option<ext::debug_utils::Device>,
+    pub(crate) census: Census,
     pub(crate) pipeline_cache: PipelineCache,
     /// Label of the recording that is open.
     recording: Mutex<Option<String>>,
@@ -50,6 +52,7 @@ impl Context {
             queue: Mutex::new(queue),
             allocator: Mutex::new(None),
             debug,
+            census: Census::default(),
             recording: Mutex::new(None),
             physical_device: candidate.raw,
             instance,
@@ -89,6 +92,13 @@ impl Context {
         {
             tracing::error!("freeing device memory: {error}");
         }
+    }
+
+    /// What is alive.
+    pub(crate) fn population(&self) -> Population {
+        let report = lock(&self.allocator).as_ref().map(Allocator::generate_report);
+        self.census
+            .population(report.map_or([0; 2], |report| [report.total_allocated_bytes, report.total_capacity_bytes]))
     }
 
     /// Submits a command buffer that waits for semaphores and signals others; `fence` is signalled when it is done.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::buffer::BufferInner;
+use super::census::{Counted, Kind};
 use super::context::Context;
 use super::error::{During, GpuError};
 use super::pipeline::{PipelineInner, descriptor_type};
@@ -15,6 +16,7 @@ pub(crate) struct Descriptors {
     context: Arc<Context>,
     pool: vk::DescriptorPool,
     pub(crate) sets: Vec<vk::DescriptorSet>,
+    _counted: Counted,
 }
 
 impl Descriptors {
@@ -37,7 +39,8 @@ impl Descriptors {
             vk::DescriptorPoolCreateInfo::default().max_sets(pipeline.set_layouts.len() as u32).pool_sizes(&sizes);
         // SAFETY: there is at least one set and one descriptor.
         let pool = unsafe { context.device.create_descriptor_pool(&info, None) }.during("vkCreateDescriptorPool")?;
-        let mut descriptors = Self { context: context.clone(), pool, sets: Vec::new() };
+        let counted = context.census.count(Kind::DescriptorPool);
+        let mut descriptors = Self { context: context.clone(), pool, sets: Vec::new(), _counted: counted };
         let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&pipeline.set_layouts);
         // SAFETY: the pool holds as many sets and descriptors.
         descriptors.sets =

@@ -46,6 +46,28 @@ impl ImageFormat {
     }
 }
 
+/// How pictures are encoded for a screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum ScreenEncoding {
+    /// sRGB in bytes.
+    #[default]
+    Srgb,
+    /// Linear sRGB beyond [0, 1] in half floats, 1 being 80 cd/m² (scRGB).
+    ExtendedLinear,
+    /// HDR10: BT.2020 under the perceptual quantizer of SMPTE ST 2084, in half floats until the screen's own 10 bits.
+    Hdr10,
+}
+
+impl ScreenEncoding {
+    /// Format of pictures that are encoded so.
+    pub const fn image_format(self) -> ImageFormat {
+        match self {
+            Self::Srgb => ImageFormat::Rgba8Unorm,
+            Self::ExtendedLinear | Self::Hdr10 => ImageFormat::Rgba16Float,
+        }
+    }
+}
+
 /// How a device can sample a format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Filtering {

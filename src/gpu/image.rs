@@ -8,6 +8,7 @@ use gpu_allocator::vulkan::Allocation;
 use welkin_shaders::Dimension;
 
 use super::barrier::State;
+use super::census::{Counted, Kind};
 use super::context::Context;
 use super::error::{During, GpuError};
 use super::format::ImageFormat;
@@ -133,6 +134,7 @@ pub(crate) struct ImageInner {
     allocation: Option<Allocation>,
     /// After all that has been submitted.
     pub(crate) state: Mutex<State>,
+    _counted: Counted,
 }
 
 impl ImageInner {
@@ -156,6 +158,7 @@ impl ImageInner {
             view: vk::ImageView::null(),
             allocation: None,
             state: Mutex::default(),
+            _counted: context.census.count(Kind::Image),
         };
         context.name(raw, name);
         // SAFETY: the image is alive; its memory is of the size and type it requires, and is not used by others.

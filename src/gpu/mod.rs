@@ -7,6 +7,7 @@
 
 mod barrier;
 mod buffer;
+mod census;
 mod command_list;
 mod context;
 mod descriptors;
@@ -34,12 +35,13 @@ mod validation;
 use std::sync::Arc;
 
 use bytemuck::{AnyBitPattern, NoUninit};
-use welkin_shaders::Shader;
+use welkin_shaders::{Parameters, Shader};
 
 pub use buffer::{BufferKind, GpuBuffer};
+pub use census::Population;
 pub use device::{DeviceInfo, DeviceKind, DeviceRequest, Limits};
 pub use error::GpuError;
-pub use format::{Filtering, ImageFormat};
+pub use format::{Filtering, ImageFormat, ScreenEncoding};
 pub use image::{GpuImage, ImageShape, NextUse};
 pub use pace::Pace;
 pub use pipeline::{MAX_UNIFORM_BUFFERS, Pipeline};
@@ -89,6 +91,23 @@ impl Gpu {
     /// The messages of the validation layer so far and from now on; empty without the layer.
     pub fn validation_log(&self) -> ValidationLog {
         self.0.instance.log.clone()
+    }
+
+    /// Where shaders should look for their parameters.
+    ///
+    /// lavapipe writes what lies in uniform buffers into the code where branches and loops depend on it, so that a dispatch
+    /// with new parameters is compiled anew, and Mesa 22 never gives the code of earlier ones back: half a megabyte each
+    /// time. Storage buffers it leaves alone, and dispatches take no longer with them.
+    pub fn parameters(&self) -> Parameters {
+        match self.info().kind {
+            DeviceKind::Cpu => Parameters::Storage,
+            _ => Parameters::Uniform,
+        }
+    }
+
+    /// What is alive on the device at the moment.
+    pub fn population(&self) -> Population {
+        self.0.population()
     }
 
     /// How the device samples a format.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 use welkin_shaders::{Binding, BindingKind, Shader};
 
+use super::census::{Counted, Kind};
 use super::context::Context;
 use super::error::{During, GpuError};
 
@@ -37,6 +38,7 @@ pub(crate) struct PipelineInner {
     pub(crate) set_layouts: Vec<vk::DescriptorSetLayout>,
     pub(crate) layout: vk::PipelineLayout,
     pub(crate) raw: vk::Pipeline,
+    _counted: Counted,
 }
 
 impl PipelineInner {
@@ -51,6 +53,7 @@ impl PipelineInner {
             set_layouts: Vec::new(),
             layout: vk::PipelineLayout::null(),
             raw: vk::Pipeline::null(),
+            _counted: context.census.count(Kind::Pipeline),
         };
         let groups = shader.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
         for group in 0..groups {

@@ -19,7 +19,7 @@ pub enum Resource<'a> {
     Sampled(&'a GpuImage, &'a Sampler),
     /// A uniform or storage buffer.
     Buffer(&'a GpuBuffer),
-    /// The content of a uniform buffer for this one dispatch; copied at once.
+    /// The content of a buffer of parameters for this one dispatch; copied at once.
     Data(&'a [u8]),
     /// A sampler.
     Sampler(&'a Sampler),
@@ -124,6 +124,9 @@ fn fits(kind: &BindingKind, resource: &Resource) -> bool {
             buffer.kind() == BufferKind::Uniform && buffer.bytes() >= u64::from(size)
         }
         (&BindingKind::UniformBuffer { size }, Resource::Data(data)) => data.len() == size as usize,
+        (&BindingKind::StorageBuffer { writable: false, minimum_size }, Resource::Data(data)) => {
+            data.len() == minimum_size as usize
+        }
         (&BindingKind::StorageBuffer { minimum_size, .. }, Resource::Buffer(buffer)) => {
             buffer.kind() == BufferKind::Storage && buffer.bytes() >= u64::from(minimum_size)
         }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use ash::vk;
 
+use super::census::{Counted, Kind};
 use super::context::Context;
 use super::device::DeviceInfo;
 use super::error::{During, GpuError};
@@ -67,12 +68,13 @@ impl Timer {
 pub(crate) struct Timestamps {
     context: Arc<Context>,
     pools: Vec<vk::QueryPool>,
+    counted: Vec<Counted>,
     labels: Vec<String>,
 }
 
 impl Timestamps {
     fn new(context: &Arc<Context>) -> Self {
-        Self { context: context.clone(), pools: Vec::new(), labels: Vec::new() }
+        Self { context: context.clone(), pools: Vec::new(), counted: Vec::new(), labels: Vec::new() }
     }
 
     /// Before a dispatch: when all commands before it are done.
@@ -84,6 +86,7 @@ impl Timestamps {
             unsafe {
                 let pool = self.context.device.create_query_pool(&info, None).during("vkCreateQueryPool")?;
                 self.pools.push(pool);
+                self.counted.push(self.context.census.count(Kind::QueryPool));
                 self.context.device.cmd_reset_query_pool(commands, pool, 0, queries);
             }
         }

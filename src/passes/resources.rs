@@ -7,7 +7,7 @@ use welkin_shaders::{Definitions, Shader};
 use super::{RenderError, ShaderSources};
 use crate::gpu::{
     AddressMode, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, NextUse, Pace,
-    Pipeline, Sampler,
+    Pipeline, Sampler, ScreenEncoding,
 };
 use crate::plan::TableFormat;
 
@@ -27,6 +27,8 @@ pub struct Resources {
     pub widest_tables: TableFormat,
     /// How long submissions may be, where others use the device as well.
     pub pace: Option<Pace>,
+    /// What the picture is encoded for.
+    pub screen: ScreenEncoding,
     /// Images of the host's that a frame is drawn into, and what it does with them next.
     pub targets: Vec<(&'static str, GpuImage, NextUse)>,
 }
@@ -80,6 +82,7 @@ impl Resources {
             pipelines: HashMap::new(),
             widest_tables,
             pace: None,
+            screen: ScreenEncoding::Srgb,
             targets: Vec::new(),
         })
     }
@@ -175,7 +178,7 @@ impl Resources {
             let relevant = (*pass, shaders.relevant(pass, definitions)?);
             let pipeline = match pipelines.get(&relevant) {
                 Some(pipeline) => pipeline.clone(),
-                None => self.gpu.pipeline(&Shader::from_sources(&shaders, pass, &relevant.1)?)?,
+                None => compile(&self.gpu, &shaders, pass, &relevant.1)?,
             };
             pipelines.insert(relevant, pipeline.clone());
             pipelines.insert((*pass, definitions.clone()), pipeline);
@@ -194,12 +197,16 @@ impl Resources {
         let relevant = (pass, self.shaders.relevant(pass, &key.1)?);
         let pipeline = match self.pipelines.get(&relevant) {
             Some(pipeline) => pipeline.clone(),
-            None => self.gpu.pipeline(&Shader::from_sources(&self.shaders, pass, &relevant.1)?)?,
+            None => compile(&self.gpu, &self.shaders, pass, &relevant.1)?,
         };
         self.pipelines.insert(relevant, pipeline.clone());
         self.pipelines.insert(key, pipeline.clone());
         Ok(pipeline)
     }
+}
+
+fn compile(gpu: &Gpu, shaders: &ShaderSources, pass: &str, definitions: &Definitions) -> Result<Pipeline, RenderError> {
+    Ok(gpu.pipeline(&Shader::with_parameters(shaders, pass, definitions, gpu.parameters())?)?)
 }
 
 #[cfg(test)]

@@ -13,6 +13,14 @@ pub fn alone() -> MutexGuard<'static, ()> {
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Memory that this process occupies, KiB.
+#[allow(dead_code)]
+pub fn resident_kib() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find(|line| line.starts_with("VmRSS:")).expect("a process has memory");
+    line.split_whitespace().nth(1).and_then(|number| number.parse().ok()).expect("a number of KiB")
+}
+
 /// Runs a test on a device with validation on. A machine without a device fails the test, and so does a single message
 /// of the validation layer, also one that comes when the device is closed.
 #[allow(dead_code)]
