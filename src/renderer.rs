@@ -73,7 +73,7 @@ impl Renderer {
         if scene.spectrum.group_count() > 1 {
             return Self::plan_groups(scene, settings, outputs);
         }
-        let facts = Facts::new(scene, settings, Orders::All, outputs)?;
+        let facts = Facts::new(scene, settings, Orders::All, outputs)?.in_picture();
         let declarations: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).map(|pass| pass.declaration).collect();
         Ok(Plan::new(&facts, &History::default(), &declarations))
     }
@@ -153,7 +153,7 @@ impl Renderer {
         if scene.spectrum.group_count() > 1 {
             return self.render_groups(scene, settings, outputs);
         }
-        self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?)
+        self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?.in_picture())
     }
 
     /// Renders the air before surfaces that the host has drawn, and sky and ground where there are none. A surface behind
@@ -175,7 +175,7 @@ impl Renderer {
         passes::upload_foreground(&mut self.resources, &scene.camera, foreground)?;
         self.foregrounds += 1;
         let surface = Some(Surface::Given(self.foregrounds));
-        self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?.with_surface(surface))
+        self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?.in_picture().with_surface(surface))
     }
 
     fn render_frame(&mut self, facts: &Facts) -> Result<Rendered, RenderError> {
@@ -252,13 +252,15 @@ impl Renderer {
         Ok(Timings { plan, milliseconds, clock: completed.clock })
     }
 
-    /// Frees what skipped passes have left, but what another pass writes under the same name.
+    /// Frees what skipped passes have left, but what another pass writes or keeps under the same name.
     fn release_what_nobody_writes(&mut self, plan: &Plan, passes: &[&Pass]) {
-        let skipped = |pass: &&&Pass| plan.decision(pass.declaration.name) == Some(Decision::Skip);
-        let written: Vec<_> =
-            passes.iter().filter(|pass| !skipped(pass)).flat_map(|pass| pass.declaration.writes).collect();
-        let left = passes.iter().filter(skipped).flat_map(|pass| pass.declaration.writes);
-        left.filter(|name| !written.contains(name)).for_each(|name| self.resources.release(name));
+        let freed = |pass: &&&Pass| {
+            let name = pass.declaration.name;
+            plan.decision(name) == Some(Decision::Skip) && !plan.keeps(name)
+        };
+        let held: Vec<_> = passes.iter().filter(|pass| !freed(pass)).flat_map(|pass| pass.declaration.writes).collect();
+        let left = passes.iter().filter(freed).flat_map(|pass| pass.declaration.writes);
+        left.filter(|name| !held.contains(name)).for_each(|name| self.resources.release(name));
     }
 
     /// Reads radiance and transmittance from the images of those names, distance and the picture.

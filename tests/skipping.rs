@@ -1,6 +1,7 @@
 //! What the plan leaves out does not show, and what it leaves out is not in the shaders.
 
 mod common;
+mod stripped;
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -9,13 +10,13 @@ use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use welkin::gpu::DeviceRequest;
 use welkin::passes::definitions;
-use welkin::plan::{Facts, Outputs, Quality, Settings, Skipping};
+use welkin::plan::{CloudSettings, Decision, Directions, Facts, Outputs, Quality, Settings, Skipping, SourceGrid};
 use welkin::probe::Orders;
 use welkin::reference::World;
 use welkin::reference::probe::direction;
 use welkin::reference::single::first_order;
 use welkin::renderer::Renderer;
-use welkin::scene::{Light, Scene};
+use welkin::scene::{Effect, Light, Scene};
 use welkin_shaders::{Definition, Shader, Sources};
 
 /// A hundredth of what the darkest night sky sends, W·m⁻²·sr⁻¹·nm⁻¹: 2e-4 cd/m² are some 1e-9.
@@ -94,6 +95,102 @@ fn lights_and_discs_that_are_left_out_do_not_show() {
     }
 }
 
+/// Tables so small that a frame costs next to nothing; all passes are the same.
+fn tiny(skipping: Skipping) -> Settings {
+    let low = Settings::of(Quality::Low);
+    Settings {
+        nodes_per_leg: 4,
+        optical_depth_size: [32, 16],
+        multiple_scattering_size: [6, 4],
+        directions: Directions { below: 2, band: 2, above: 2, azimuths: 2 },
+        source_grid: SourceGrid { ground: 2, low: 2, high: 2, azimuths: 2 },
+        source_size: [4, 4],
+        source_orders: 3,
+        sky_view_size: [8, 16],
+        froxel_size: [4, 8, 8],
+        clouds: CloudSettings {
+            sweeps: 2,
+            ordinate_cells: 16,
+            grid_size: 16,
+            grid_slices: 4,
+            max_steps: 96,
+            ..low.clouds
+        },
+        skipping,
+        ..low
+    }
+}
+
+/// A view from anywhere between the ground and space, of mountains, clouds or air that may be out of it, or deep in haze.
+fn random_view(random: &mut Pcg64Mcg, effect: Option<Effect>) -> Scene {
+    let mut uniform = |low: f64, high: f64| low + (high - low) * f64::from(random.next_u32()) * 0.5_f64.powi(32);
+    let mut scene = scene("noon");
+    (scene.camera.width, scene.camera.height) = (16, 9);
+    scene.camera.vertical_field_of_view_rad = uniform(0.1, 0.9);
+    scene.camera.direction.elevation_rad = uniform(-1.2, 1.2);
+    scene.camera.altitude_m = match effect {
+        Some(_) => 10_f64.powf(uniform(2.5, 4.5)),
+        None => 10_f64.powf(uniform(4.8, 6.5)),
+    };
+    let Light::Directional(sun) = &mut scene.lights[0] else { panic!("the sun is directional") };
+    sun.direction.elevation_rad = uniform(-5.0, 85.0).to_radians();
+    if effect == Some(Effect::Mountains) {
+        let density = 10_f64.powf(uniform(-1.0, 3.0));
+        for constituent in &mut scene.medium.constituents {
+            constituent.scattering_per_m = constituent.scattering_per_m.map(|b| b * density);
+            constituent.absorption_per_m = constituent.absorption_per_m.map(|a| a * density);
+        }
+    }
+    effect.map_or(scene.clone(), |effect| effect.added_to(&scene))
+}
+
+/// As [`difference`], over so many views.
+fn difference_in_views(
+    renderers: &mut [Renderer; 2],
+    effect: Option<Effect>,
+    skipping: Skipping,
+    views: usize,
+) -> (f64, usize) {
+    let mut random = Pcg64Mcg::seed_from_u64(11);
+    let (mut worst, mut changed) = (0.0_f64, 0);
+    for _ in 0..views {
+        let scene = random_view(&mut random, effect);
+        let [all, some] = [Skipping::NONE, skipping];
+        let [forced, left_out] = renderers;
+        let all = forced.render(&scene, tiny(all), CAPTURE).unwrap();
+        let some = left_out.render(&scene, tiny(some), CAPTURE).unwrap();
+        let needed = |plan: &welkin::plan::Plan| plan.passes.iter().filter(|p| p.decision != Decision::Skip).count();
+        changed += usize::from(needed(&all.timings.plan) != needed(&some.timings.plan));
+        for (all, some) in all.frame.radiance.as_flattened().iter().zip(some.frame.radiance.as_flattened()) {
+            worst = worst.max(f64::from((all - some).abs()) / (f64::from(*all) + DARKNESS));
+        }
+    }
+    (worst, changed)
+}
+
+#[test]
+fn what_is_out_of_the_picture_does_not_show_in_it() {
+    let _alone = common::alone();
+    let mut renderers = [(); 2].map(|()| Renderer::new(&DeviceRequest::default()).unwrap());
+    let out_of_view = |share: f64| Skipping { out_of_view_share: share, ..Skipping::USUAL };
+    let nearly_clear = Skipping { hidden_depth: 0.5, ..Skipping::USUAL };
+    // Each effect, or air alone, with how many views are tried, how many must be changed, and rules that are wrong.
+    let cases = [
+        (None, 60, 15, vec![out_of_view(0.5)]),
+        (Some(Effect::Mountains), 100, 40, vec![out_of_view(0.1), nearly_clear]),
+        (Some(Effect::Clouds), 60, 10, vec![out_of_view(0.1)]),
+    ];
+    for (effect, views, at_least, wrong) in cases {
+        let (worst, changed) = difference_in_views(&mut renderers, effect, Skipping::USUAL, views);
+        println!("{effect:?}: {worst} in {changed} of {views}");
+        assert!(worst < 0.005 && changed >= at_least, "{effect:?}: {worst} in {changed} of {views} views");
+        for rules in wrong {
+            let (worst, _) = difference_in_views(&mut renderers, effect, rules, views);
+            assert!(worst > 0.005, "{effect:?}: {rules:?} goes unnoticed: {worst}");
+        }
+    }
+}
+
 #[test]
 fn no_air_in_view_of_a_light_that_counts_as_unseen_is_lit() {
     let mut scene = scene("noon");
@@ -129,51 +226,6 @@ fn no_air_in_view_of_a_light_that_counts_as_unseen_is_lit() {
     }
 }
 
-/// The sources without what stands between `#ifdef` of an absent name and its `#else` or `#endif`, and without the files
-/// that only an absent effect has.
-fn without(absent: &[String], prefix: &str) -> Sources {
-    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders/wgsl");
-    let mut sources = Sources::default();
-    for entry in std::fs::read_dir(directory).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_str().unwrap();
-        if name.ends_with(".wgsl") && !name.starts_with(prefix) {
-            sources = sources.with(name, cut(&std::fs::read_to_string(&path).unwrap(), absent));
-        }
-    }
-    sources
-}
-
-fn cut(text: &str, absent: &[String]) -> String {
-    // For each open condition: whether it is about an absent name, and whether its lines are left out.
-    let mut open: Vec<(bool, bool)> = Vec::new();
-    let mut kept = String::new();
-    for line in text.lines() {
-        let words: Vec<_> = line.split_whitespace().collect();
-        let is_absent = words.len() > 1 && absent.iter().any(|name| name == words[1]);
-        match words.first().copied() {
-            Some("#ifdef") => open.push((is_absent, is_absent)),
-            Some("#ifndef") => open.push((is_absent, false)),
-            Some("#if") => open.push((false, false)),
-            _ => {}
-        }
-        let (about_absent, _) = open.last().copied().unwrap_or_default();
-        let directive = matches!(words.first(), Some(&("#ifdef" | "#ifndef" | "#else" | "#endif")));
-        if words.first() == Some(&"#else") && about_absent {
-            let last = open.last_mut().unwrap();
-            last.1 = !last.1;
-        }
-        if !(directive && about_absent) && open.iter().all(|(_, left_out)| !left_out) {
-            kept.push_str(line);
-            kept.push('\n');
-        }
-        if words.first() == Some(&"#endif") {
-            open.pop();
-        }
-    }
-    kept
-}
-
 #[test]
 fn an_absent_effect_leaves_no_instruction_and_no_binding() {
     // Each effect with the scene that has it, and the first word of its own files.
@@ -187,14 +239,10 @@ fn an_absent_effect_leaves_no_instruction_and_no_binding() {
         };
         let (clear, rich) = (of(&noon), of(&scene(with)));
         assert_eq!((clear[flag], rich[flag]), (Definition::Bool(false), Definition::Bool(true)), "{flag}");
-        let absent: Vec<String> = clear
-            .iter()
-            .filter(|(_, value)| **value == Definition::Bool(false))
-            .map(|(name, _)| name.clone())
-            .collect();
+        let absent = stripped::absent(&clear);
         let compile = |sources: &Sources, definitions| Shader::from_sources(sources, "compose", definitions).unwrap();
         let all = compile(&Sources::embedded(), &clear);
-        let stripped = compile(&without(&absent, prefix), &clear);
+        let stripped = compile(&stripped::without(&absent, &[prefix]), &clear);
         assert_eq!(all.spirv, stripped.spirv, "{flag} leaves instructions behind");
         assert_eq!(all.bindings, stripped.bindings, "{flag} leaves bindings behind");
         // Control: where the effect is present it has instructions.

@@ -14,10 +14,9 @@ pub const PASS: Pass = Pass {
         reads: &["optical_depth_table", "multiple_scattering_table"],
         writes: &["froxel_light"],
         inputs: |facts| {
-            let elevations: Vec<_> = facts.lights.iter().map(|light| light.direction.elevation_rad).collect();
             // The rows' mapping is that of the sky view.
             let sampling = (facts.settings.froxel_size, facts.settings.sky_view_size);
-            Fingerprint::of(&(elevations, facts.observer_altitude_m(), sampling))
+            Fingerprint::of(&(facts.observer_altitude_m(), sampling)).following(sky_view::elevations(facts))
         },
         bytes: |facts| shape(facts).texels() * ImageFormat::Rgba16Float.texel_bytes(),
     },
@@ -37,7 +36,10 @@ fn need(facts: &Facts) -> Need {
 /// The need of what only surfaces call for, where the sky behind them has one.
 pub(super) fn before_surfaces(sky: Need, facts: &Facts) -> Need {
     match (sky, facts.surface) {
-        (Need::Needed(_), None) => Need::NotNeeded("nothing stands between the camera and the ground".to_owned()),
+        (Need::Needed(_), None) => Need::NotNeeded(match &facts.out_of_view.terrain {
+            Some(reason) => reason.clone(),
+            None => "nothing stands between the camera and the ground".to_owned(),
+        }),
         (Need::Needed(_), Some(surface)) => Need::Needed(match surface {
             Surface::Terrain => "mountains stand in the air".to_owned(),
             Surface::Given(_) => "the host's surfaces stand in the air".to_owned(),

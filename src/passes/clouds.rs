@@ -87,7 +87,7 @@ pub(super) fn noise_need(facts: &Facts) -> Need {
 /// Whether there are clouds: what all passes of clouds are asked.
 pub(super) fn need(facts: &Facts) -> Need {
     if facts.clouds.is_empty() {
-        return Need::NotNeeded("no clouds".to_owned());
+        return Need::NotNeeded(facts.out_of_view.clouds.clone().unwrap_or_else(|| "no clouds".to_owned()));
     }
     let names: Vec<_> = facts.clouds.iter().map(|layer| layer.name.as_str()).collect();
     Need::Needed(format!("layers of clouds: {}", names.join(", ")))

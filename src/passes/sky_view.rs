@@ -2,7 +2,7 @@
 
 use super::{Pass, Recording, RenderError, table_format, view_optical_depth};
 use crate::gpu::{ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need};
+use crate::plan::{Declaration, Facts, Fingerprint, Need, elevation_slack_rad};
 
 const NAME: &str = "sky_view";
 
@@ -16,15 +16,21 @@ pub const PASS: Pass = Pass {
         inputs: |facts| {
             // Azimuths in the table count from the light, so only elevations matter, and a disc's width where it does.
             let disc = |light| facts.is_wide(light).then_some((light.angular_radius_rad, light.limb_darkening));
-            let elevations: Vec<_> =
-                facts.lights.iter().map(|light| (light.direction.elevation_rad, disc(light))).collect();
+            let discs: Vec<_> = facts.lights.iter().map(|light| disc(light)).collect();
             let settings = &facts.settings;
-            Fingerprint::of(&(elevations, facts.observer_altitude_m(), settings.nodes_per_leg, settings.sky_view_size))
+            let sampling = (settings.nodes_per_leg, settings.sky_view_size);
+            Fingerprint::of(&(discs, facts.observer_altitude_m(), sampling)).following(elevations(facts))
         },
         bytes: |facts| shape(facts).texels() * table_format(facts).texel_bytes(),
     },
     record,
 };
+
+/// Elevations of the lights, with how far tables may lag behind them.
+pub(super) fn elevations(facts: &Facts) -> impl Iterator<Item = (f64, f64)> {
+    let share = facts.settings.skipping.lag_share;
+    facts.lights.iter().map(move |light| (light.direction.elevation_rad, elevation_slack_rad(light, share)))
+}
 
 fn shape(facts: &Facts) -> ImageShape {
     let [width, height] = facts.settings.sky_view_size;

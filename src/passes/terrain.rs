@@ -37,6 +37,9 @@ fn need(facts: &Facts) -> Need {
     let Some(terrain) = &facts.scene.terrain else {
         return Need::NotNeeded("the ground is smooth".to_owned());
     };
+    if let Some(reason) = &facts.out_of_view.terrain {
+        return Need::NotNeeded(reason.clone());
+    }
     if facts.surface != Some(Surface::Terrain) {
         return Need::NotNeeded("the host's surfaces stand in place of the mountains".to_owned());
     }

@@ -30,7 +30,8 @@ pub(super) fn shape(facts: &Facts) -> ImageShape {
 
 pub(super) fn need(facts: &Facts) -> Need {
     if !facts.has_air() {
-        return Need::NotNeeded("vacuum: no constituent absorbs or scatters".to_owned());
+        let vacuum = || "vacuum: no constituent absorbs or scatters".to_owned();
+        return Need::NotNeeded(facts.out_of_view.air.clone().unwrap_or_else(vacuum));
     }
     Need::Needed(seen_from(facts))
 }

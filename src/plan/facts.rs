@@ -7,7 +7,7 @@ use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::disc::is_wide;
 use super::faint::{Reach, reach};
-use super::{CloudScattering, PlanError, Sequence, Settings, Skipping, TableFormat, Treatment};
+use super::{CloudScattering, OutOfView, PlanError, Sequence, Settings, Skipping, TableFormat, Treatment};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, GroupColour, Light, PointLight, Scene, WavelengthGroup};
 
@@ -127,6 +127,8 @@ pub struct Facts<'a> {
     pub surface: Option<Surface>,
     /// Where this frame stands among others; none for one that stands alone.
     pub sequence: Option<Sequence>,
+    /// What is left out because the picture does not show it.
+    pub out_of_view: OutOfView,
 }
 
 impl<'a> Facts<'a> {
@@ -186,6 +188,7 @@ impl<'a> Facts<'a> {
             },
             surface: None,
             sequence: None,
+            out_of_view: OutOfView::default(),
         };
         Ok(facts.with_surface(scene.terrain.as_ref().map(|_| Surface::Terrain)))
     }

@@ -7,11 +7,13 @@ mod disc;
 mod facts;
 mod faint;
 mod ladder;
+mod lag;
 mod multiple_scattering;
 mod scene_traits;
 mod sequence;
 mod settings;
 mod skipping;
+mod view;
 mod volume_settings;
 
 use std::collections::BTreeMap;
@@ -21,12 +23,14 @@ pub use cloud_settings::{CloudScattering, CloudSettings};
 pub use declaration::{Declaration, Fingerprint, Need};
 pub use facts::{ConstituentGroups, Facts, Outputs, SpectralPart, Surface, Viewpoint};
 pub use ladder::{LadderStep, Rung};
+pub use lag::elevation_slack_rad;
 pub use multiple_scattering::{MultipleScattering, Treatment, error_in_shadow, expected_ringing};
 pub use scene_traits::{SceneKind, SceneTraits};
 pub use sequence::{Moment, Sequence, follows, pixel_of_block};
 use serde::Serialize;
 pub use settings::{Directions, Quality, Settings, SourceGrid, TableFormat};
 pub use skipping::Skipping;
+pub use view::{OutOfView, SeenAltitudes};
 pub use volume_settings::VolumeSettings;
 
 /// Why a scene cannot be planned.
@@ -53,7 +57,7 @@ pub enum Decision {
 }
 
 /// A pass with its decision.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PlannedPass {
     /// The stem of its files.
     pub name: &'static str,
@@ -63,11 +67,12 @@ pub struct PlannedPass {
     pub reason: String,
     /// Bytes that its results occupy; 0 when skipped.
     pub bytes: u64,
+    /// Of its results; none where it is skipped and has freed them.
     fingerprint: Option<Fingerprint>,
 }
 
 /// All passes in order.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// In the order in which they run.
     pub passes: Vec<PlannedPass>,
@@ -91,10 +96,25 @@ impl History {
         running.for_each(|pass| self.forget(pass.name));
     }
 
+    /// The result that is refreshed before it must be: the one that lags most, once it lags by half of what it may, and
+    /// only in a frame in which none must be. So results that lag behind the same light are computed in different frames.
+    fn next_to_refresh(&self, facts: &Facts, declarations: &[Declaration]) -> Option<&'static str> {
+        let lag = |declaration: &Declaration| {
+            let before = self.results.get(declaration.name)?;
+            Some((declaration.name, before.lag_of_values(&(declaration.inputs)(facts))?))
+        };
+        let lags: Vec<_> = declarations.iter().filter_map(lag).collect();
+        if lags.iter().any(|(_, lag)| *lag > 1.0) {
+            return None;
+        }
+        let most = lags.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (most.1 > 0.5).then_some(most.0)
+    }
+
     /// Remembers what a plan's passes have computed.
     pub fn record(&mut self, plan: &Plan) {
         for pass in &plan.passes {
-            match pass.fingerprint {
+            match pass.fingerprint.clone() {
                 Some(fingerprint) => self.results.insert(pass.name, fingerprint),
                 // A skipped pass has freed its results.
                 None => self.results.remove(pass.name),
@@ -123,20 +143,39 @@ impl Plan {
     /// Decides for each declared pass, in order, whether it runs.
     pub fn new(facts: &Facts, history: &History, declarations: &[Declaration]) -> Self {
         let mut written: BTreeMap<&str, Fingerprint> = BTreeMap::new();
+        let refreshed = history.next_to_refresh(facts, declarations);
         let mut passes = Vec::with_capacity(declarations.len());
         for declaration in declarations {
             let pass = match (declaration.need)(facts) {
                 Need::NotNeeded(reason) => skipped(declaration, reason),
                 Need::Needed(reason) => {
                     let read: Vec<_> = declaration.reads.iter().map(|name| written.get(name)).collect();
-                    let fingerprint = Fingerprint::of(&((declaration.inputs)(facts), read));
-                    written.extend(declaration.writes.iter().map(|name| (*name, fingerprint)));
-                    needed(declaration, facts, history, reason, fingerprint)
+                    let fingerprint = (declaration.inputs)(facts).reading(&read);
+                    let before = history.results.get(declaration.name).filter(|_| refreshed != Some(declaration.name));
+                    let pass = needed(declaration, facts, before, reason, fingerprint);
+                    let result = pass.fingerprint.iter().cloned();
+                    written
+                        .extend(result.flat_map(|of| declaration.writes.iter().map(move |name| (*name, of.clone()))));
+                    pass
                 }
             };
             passes.push(pass);
         }
+        if facts.out_of_view.is_any() {
+            let untouched =
+                |declaration: &Declaration| !declaration.writes.iter().any(|name| written.contains_key(name));
+            let skipped = |pass: &PlannedPass| pass.decision == Decision::Skip;
+            for (pass, _) in passes.iter_mut().zip(declarations).filter(|(pass, of)| skipped(pass) && untouched(of)) {
+                pass.fingerprint = history.results.get(pass.name).cloned();
+            }
+        }
         Self { passes }
+    }
+
+    /// Whether a skipped pass keeps its results, as the next picture may show what this one does not.
+    pub fn keeps(&self, name: &str) -> bool {
+        let kept = |pass: &&PlannedPass| pass.decision == Decision::Skip && pass.fingerprint.is_some();
+        self.passes.iter().filter(kept).any(|pass| pass.name == name)
     }
 
     /// The decision about a pass, if it is part of the plan.
@@ -152,15 +191,20 @@ fn skipped(declaration: &Declaration, reason: String) -> PlannedPass {
 fn needed(
     declaration: &Declaration,
     facts: &Facts,
-    history: &History,
+    before: Option<&Fingerprint>,
     reason: String,
     fingerprint: Fingerprint,
 ) -> PlannedPass {
-    let (decision, reason) = match history.results.get(declaration.name) {
-        Some(before) if *before == fingerprint => {
-            (Decision::Reuse, "nothing that it depends on has changed".to_owned())
+    let lag = before.and_then(|before| before.lag_behind(&fingerprint));
+    let (decision, reason, fingerprint) = match (lag, before) {
+        (Some(0.0), Some(before)) => {
+            (Decision::Reuse, "nothing that it depends on has changed".to_owned(), before.clone())
         }
-        _ => (Decision::Run, reason),
+        (Some(lag), Some(before)) if lag <= 1.0 => {
+            let reason = format!("it lags behind the light by {:.0} % of what does not show", 100.0 * lag);
+            (Decision::Reuse, reason, before.clone())
+        }
+        _ => (Decision::Run, reason, fingerprint),
     };
     let bytes = (declaration.bytes)(facts);
     PlannedPass { name: declaration.name, decision, reason, bytes, fingerprint: Some(fingerprint) }

@@ -11,6 +11,13 @@ pub struct Skipping {
     pub narrowest_disc_rad: f64,
     /// A disc counts as a beam where it stands more of its angular radii than this above the horizon: 1° for the sun.
     pub beam_above_radii: f64,
+    /// Mountains, clouds and air are out of the picture where its lowest ray stays above this share of their height.
+    pub out_of_view_share: f64,
+    /// Optical depth of the air behind which nothing is seen of mountains: e^-18 is a fifty-millionth, and a layer as thick
+    /// sends at least a few ten-thousandths of the light that falls on it back, or is black itself.
+    pub hidden_depth: f64,
+    /// How far light in a pixel may lag behind a moving light, relative; 0 where every frame is for itself.
+    pub lag_share: f64,
 }
 
 impl Skipping {
@@ -20,7 +27,13 @@ impl Skipping {
         unseen_depressions: 1.0,
         narrowest_disc_rad: 0.1 * std::f64::consts::PI / 180.0,
         beam_above_radii: 3.75,
+        out_of_view_share: 1.0,
+        hidden_depth: 18.0,
+        lag_share: 0.0,
     };
+
+    /// The same in sequences of frames: tables lag behind moving lights by what changes no pixel by more than half a per cent.
+    pub const IN_SEQUENCE: Self = Self { lag_share: 0.005, ..Self::USUAL };
 
     /// Everything that is there is computed.
     pub const NONE: Self = Self {
@@ -28,5 +41,8 @@ impl Skipping {
         unseen_depressions: f64::INFINITY,
         narrowest_disc_rad: f64::MIN_POSITIVE,
         beam_above_radii: f64::INFINITY,
+        out_of_view_share: f64::INFINITY,
+        hidden_depth: f64::INFINITY,
+        lag_share: 0.0,
     };
 }

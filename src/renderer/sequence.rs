@@ -3,7 +3,8 @@
 use super::{Rendered, Renderer, Targets, Timings};
 use crate::gpu::NextUse;
 use crate::passes::RenderError;
-use crate::plan::{CloudSettings, Moment, Outputs, Sequence, Settings, follows};
+use crate::plan::{CloudSettings, Facts, Moment, Outputs, Sequence, Settings, follows};
+use crate::probe::Orders;
 use crate::scene::Scene;
 
 /// The frame before.
@@ -11,6 +12,8 @@ pub(super) struct Before {
     scene: Scene,
     clouds: CloudSettings,
     index: u32,
+    /// What was out of view.
+    out_of_view: [bool; 3],
 }
 
 impl Renderer {
@@ -50,8 +53,11 @@ impl Renderer {
         settings: Settings,
         render: impl FnOnce(&mut Self) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
+        // What was out of view has left nothing that could be followed.
+        let out_of_view = Facts::new(scene, settings, Orders::All, Outputs::default())?.in_picture().out_of_view.which();
+        let is_same = |before: &Before| before.clouds == settings.clouds && before.out_of_view == out_of_view;
         let sequence = match self.before.take() {
-            Some(before) if before.clouds == settings.clouds && follows(&before.scene, scene) => Sequence {
+            Some(before) if is_same(&before) && follows(&before.scene, scene) => Sequence {
                 index: before.index + 1,
                 before: Some(Moment { camera: before.scene.camera, time_s: before.scene.time_s }),
                 is_still: before.scene == *scene,
@@ -62,7 +68,8 @@ impl Renderer {
         let rendered = render(self);
         self.sequence = None;
         let rendered = rendered?;
-        self.before = Some(Before { scene: scene.clone(), clouds: settings.clouds, index: sequence.index });
+        let (scene, clouds, index) = (scene.clone(), settings.clouds, sequence.index);
+        self.before = Some(Before { scene, clouds, index, out_of_view });
         Ok(rendered)
     }
 }

@@ -19,7 +19,7 @@ impl Renderer {
         let declarations: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).map(|pass| pass.declaration).collect();
         let plan = |part: SpectralPart| -> Result<Plan, RenderError> {
             let at = scene.at(&part.wavelengths);
-            let facts = Facts { part: Some(part), ..Facts::new(&at, settings, Orders::All, outputs)? };
+            let facts = Facts { part: Some(part), ..Facts::new(&at, settings, Orders::All, outputs)?.in_picture() };
             Ok(Plan::new(&facts, &History::default(), &declarations))
         };
         Ok(Plan::of_groups(&parts(scene).into_iter().map(plan).collect::<Result<Vec<_>, _>>()?, &SHARED_PASSES))
@@ -47,7 +47,7 @@ impl Renderer {
         let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
         let run = |part: &SpectralPart| {
             let at = scene.at(&part.wavelengths);
-            let facts = Facts { part: Some(*part), ..Facts::new(&at, settings, Orders::All, outputs)? };
+            let facts = Facts { part: Some(*part), ..Facts::new(&at, settings, Orders::All, outputs)?.in_picture() };
             self.select_group(part.index);
             let timings = self.execute("frame", &facts, &passes, |_| Ok(()));
             // The next group overwrites the images of the frame.
