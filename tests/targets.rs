@@ -4,7 +4,8 @@ mod common;
 
 use std::time::Duration;
 
-use welkin::gpu::{Gpu, GpuImage, ImageFormat, ImageShape, NextUse, Pace};
+use welkin::gpu::{Gpu, GpuImage, ImageFormat, ImageShape, NextUse, Pace, ScreenEncoding};
+use welkin::output::{display, screen};
 use welkin::passes::RenderError;
 use welkin::plan::{Decision, Outputs, Quality, Settings};
 use welkin::renderer::{Renderer, Targets};
@@ -65,6 +66,47 @@ fn a_frame_in_the_hosts_images_is_the_frame_that_is_read_back() {
             assert_eq!(shown(&content(gpu, &second)), shown(&expected));
             assert_eq!(shown(&content(gpu, &first)), shown(&expected));
             assert_ne!(shown(&other), shown(&expected), "the control: another sun is another picture");
+        }
+    });
+}
+
+#[test]
+fn a_screen_that_shows_light_above_white_is_sent_what_the_standards_say() {
+    common::with_gpu(|gpu| {
+        let mut renderer = Renderer::on(gpu.clone()).unwrap();
+        // The sun stands in the picture: light far above white.
+        let scene = scene(8.0, "[display]\nexposure_ev = 2\n");
+        for (encoding, encode) in [
+            (ScreenEncoding::ExtendedLinear, screen::extended_linear as fn([f64; 3]) -> [f64; 3]),
+            (ScreenEncoding::Hdr10, screen::hdr10),
+        ] {
+            let picture = gpu.image("bright", ImageShape::D2(96, 64), encoding.image_format()).ok();
+            let targets = Targets { picture, encoding, ..targets(gpu, 96) };
+            renderer.render_to(&scene, settings(), &targets, NextUse::Copy).unwrap();
+            let sent: Vec<[half::f16; 4]> = gpu
+                .read_image::<[u16; 4]>(targets.picture.as_ref().unwrap())
+                .unwrap()
+                .into_iter()
+                .map(|texel| texel.map(half::f16::from_bits))
+                .collect();
+            let radiance: Vec<[f32; 4]> = gpu.read_image(targets.radiance.as_ref().unwrap()).unwrap();
+            let exposed = display::exposed_srgb(&scene);
+            let expected = |&[r, g, b, _]: &[f32; 4]| {
+                let linear = exposed * glam::DVec3::new(r.into(), g.into(), b.into());
+                encode(display::tone_map_up_to(screen::HEADROOM, scene.display.tone_map, linear.to_array()))
+            };
+            let (mut worst, mut brightest) = (0.0_f64, 0.0_f64);
+            for (sent, expected) in sent.iter().zip(radiance.iter().map(expected)) {
+                for (sent, expected) in sent.iter().zip(expected) {
+                    worst = worst.max((sent.to_f64() - expected).abs() / expected.max(0.05));
+                    brightest = brightest.max(expected);
+                }
+            }
+            // Noise of a step of ten bits where there is any, and the rounding of half floats.
+            let noise = if encoding == ScreenEncoding::Hdr10 { 1.0 / 1023.0 / 0.05 } else { 0.0 };
+            assert!(worst < noise + 2e-3, "{encoding:?}: {worst}");
+            let white = encode([1.0; 3])[0];
+            assert!(brightest > 1.1 * white, "the control: {encoding:?} shows more than white: {brightest} {white}");
         }
     });
 }

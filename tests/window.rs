@@ -113,7 +113,7 @@ fn what_is_edited_beside_the_window_is_seen_in_it_and_faults_change_nothing() {
     // A broken shader is named with its line, and the picture stays.
     let display = folder.join("wgsl/display.wgsl");
     let whole = fs::read_to_string(&display).unwrap();
-    let last = "textureStore(picture_image, id.xy, vec4<f32>(encoded + dither(id.xy), 1.0));";
+    let last = "textureStore(picture_image, id.xy, vec4<f32>(shown + dither(id.xy), 1.0));";
     let line = 1 + whole.lines().position(|line| line.contains(last)).expect("the line that stores a pixel");
     fs::write(&display, whole.replace(last, "textureStore(picture_image, id.xy, nothing);")).unwrap();
     program.wait_for(&format!("wgsl/display.wgsl:{line}:"), 0);

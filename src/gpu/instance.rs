@@ -70,7 +70,8 @@ impl Instance {
         let settings = layer_version.is_some_and(|version| version >= SHADER_ACCESSES_VERSION)
             && has_extension(&entry, Some(LAYER), ext::layer_settings::NAME)?;
         let log = ValidationLog::default();
-        let extras = Extras { validate, debug_utils, features, settings, needed };
+        let colour_spaces = !needed.is_empty() && has_extension(&entry, None, ext::swapchain_colorspace::NAME)?;
+        let extras = Extras { validate, debug_utils, features, settings, colour_spaces, needed };
         let raw = create(&entry, extras, &log)?;
         let mut instance = Self {
             raw,
@@ -119,18 +120,21 @@ struct Extras {
     features: bool,
     /// The layer's settings.
     settings: bool,
+    /// Windows tell of more than sRGB.
+    colour_spaces: bool,
     /// Extensions that must be there.
     needed: &'static [*const c_char],
 }
 
 fn create(entry: &ash::Entry, extras: Extras, log: &ValidationLog) -> Result<ash::Instance, GpuError> {
-    let Extras { validate, debug_utils, features, settings, needed } = extras;
+    let Extras { validate, debug_utils, features, settings, colour_spaces, needed } = extras;
     let application = vk::ApplicationInfo::default().application_name(c"welkin").api_version(vk::API_VERSION_1_3);
     let layers: &[*const c_char] = if validate { &[LAYER.as_ptr()] } else { &[] };
     let mut extensions = needed.to_vec();
     extensions.extend(debug_utils.then_some(ext::debug_utils::NAME.as_ptr()));
     extensions.extend(features.then_some(ext::validation_features::NAME.as_ptr()));
     extensions.extend(settings.then_some(ext::layer_settings::NAME.as_ptr()));
+    extensions.extend(colour_spaces.then_some(ext::swapchain_colorspace::NAME.as_ptr()));
     let synchronisation = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
     let mut checks = vk::ValidationFeaturesEXT::default().enabled_validation_features(&synchronisation);
     let yes = vk::TRUE.to_ne_bytes();

@@ -11,9 +11,10 @@ use super::barrier::{Barrier, Barriers};
 use super::command_list::CommandList;
 use super::context::Context;
 use super::error::{During, GpuError};
+use super::format::ScreenEncoding;
 use super::image::GpuImage;
 use super::surface::Surface;
-use super::swapchain::Swapchain;
+use super::swapchain::{Swapchain, shows_above_white};
 
 /// Frames that the host may be ahead of the device.
 pub const FRAMES_IN_FLIGHT: usize = 2;
@@ -55,6 +56,8 @@ pub struct Presenter {
     swapchain: Option<Swapchain>,
     /// The window has changed, or the swapchain does not fit well.
     stale: bool,
+    /// Light above white is wanted.
+    bright: bool,
     slots: Vec<Slot>,
     next: usize,
     cost: Duration,
@@ -87,6 +90,7 @@ impl Presenter {
             context,
             swapchain: None,
             stale: true,
+            bright: false,
             slots: Vec::new(),
             next: 0,
             cost: Duration::ZERO,
@@ -115,12 +119,12 @@ impl Presenter {
             self.wait_idle()?;
             let context = self.context.clone();
             let old = self.swapchain.take();
-            let made = Swapchain::new(&context, surface(&context)?, size, old.as_ref());
+            let made = Swapchain::new(&context, surface(&context)?, size, self.bright, old.as_ref());
             drop(old);
             match made {
                 Err(GpuError::Vulkan { result: vk::Result::ERROR_SURFACE_LOST_KHR, .. }) => {
                     surface(&context)?.renew(&context.instance)?;
-                    self.swapchain = Swapchain::new(&context, surface(&context)?, size, None)?;
+                    self.swapchain = Swapchain::new(&context, surface(&context)?, size, self.bright, None)?;
                 }
                 made => self.swapchain = made?,
             }
@@ -132,6 +136,26 @@ impl Presenter {
     /// Format of the window's images; after [`Presenter::prepare`].
     pub fn format(&self) -> Option<vk::Format> {
         self.swapchain.as_ref().map(|swapchain| swapchain.format.format)
+    }
+
+    /// How pictures must be encoded; after [`Presenter::prepare`].
+    pub fn encoding(&self) -> ScreenEncoding {
+        self.swapchain.as_ref().map_or(ScreenEncoding::Srgb, |swapchain| swapchain.encoding)
+    }
+
+    /// Whether the screen shows light above white.
+    ///
+    /// # Errors
+    /// Vulkan's errors.
+    pub fn offers_above_white(&self) -> Result<bool, GpuError> {
+        let formats = surface(&self.context)?.formats(self.context.physical_device);
+        Ok(shows_above_white(&formats.during("vkGetPhysicalDeviceSurfaceFormatsKHR")?))
+    }
+
+    /// Asks for light above white, or no more; the next [`Presenter::prepare`] does it where the screen can.
+    pub fn want_above_white(&mut self, bright: bool) {
+        self.stale |= self.bright != bright;
+        self.bright = bright;
     }
 
     /// Draws pictures and overlay and shows them; after [`Presenter::prepare`]. False where nothing could be shown now,

@@ -7,6 +7,7 @@ use ash::{khr, vk};
 
 use super::context::Context;
 use super::error::{During, GpuError};
+use super::format::ScreenEncoding;
 use super::surface::Surface;
 
 /// A swapchain with a view of each image. Destroyed only while the device uses none of them.
@@ -20,14 +21,17 @@ pub(crate) struct Swapchain {
     pub(crate) drawn: Vec<vk::Semaphore>,
     pub(crate) extent: vk::Extent2D,
     pub(crate) format: vk::SurfaceFormatKHR,
+    pub(crate) encoding: ScreenEncoding,
 }
 
 impl Swapchain {
-    /// For a surface and the size that the window has, in pixels; `None` where the window has no area at the moment.
+    /// For a surface and the size that the window has, in pixels; `None` where the window has no area at the moment. With
+    /// `bright`, it shows light above white where the surface can.
     pub(crate) fn new(
         context: &Arc<Context>,
         surface: &Surface,
         size: [u32; 2],
+        bright: bool,
         old: Option<&Self>,
     ) -> Result<Option<Self>, GpuError> {
         let device = context.physical_device;
@@ -37,7 +41,7 @@ impl Swapchain {
             return Ok(None);
         }
         let formats = surface.formats(device).during("vkGetPhysicalDeviceSurfaceFormatsKHR")?;
-        let Some(format) = choose_format(&formats) else {
+        let Some((format, encoding)) = choose_format(&formats, bright) else {
             return Err(GpuError::NoSurface("its formats are none that pictures can be drawn in".to_owned()));
         };
         let functions = khr::swapchain::Device::new(&context.instance.raw, &context.device);
@@ -61,7 +65,8 @@ impl Swapchain {
         let raw = unsafe { functions.create_swapchain(&info, None) }.during("vkCreateSwapchainKHR")?;
         // From here on, an early return destroys what there is.
         let (images, views, drawn) = (Vec::new(), Vec::new(), Vec::new());
-        let mut swapchain = Self { context: context.clone(), functions, raw, images, views, drawn, extent, format };
+        let mut swapchain =
+            Self { context: context.clone(), functions, raw, images, views, drawn, extent, format, encoding };
         swapchain.take_images()?;
         Ok(Some(swapchain))
     }
@@ -136,19 +141,36 @@ fn opaque(supported: vk::CompositeAlphaFlagsKHR) -> vk::CompositeAlphaFlagsKHR {
     if supported.contains(opaque) { opaque } else { vk::CompositeAlphaFlagsKHR::INHERIT }
 }
 
-/// Bytes or more bits, which are sent as they are: an `SRGB` format would encode what is encoded already.
-fn choose_format(offered: &[vk::SurfaceFormatKHR]) -> Option<vk::SurfaceFormatKHR> {
-    let wanted = [
+/// Whether a surface shows light above white. Extended sRGB alone does not say so: some systems offer it for any screen, and
+/// clip what is above white.
+pub(crate) fn shows_above_white(offered: &[vk::SurfaceFormatKHR]) -> bool {
+    offered.iter().any(|offer| offer.color_space == Space::HDR10_ST2084_EXT)
+}
+
+/// The format that pictures and panel look best in: where light above white is asked for and can be shown, half floats in
+/// linear light, or else ten bits of HDR10; and bytes or ten bits of sRGB. They are sent as they are: an `SRGB` format would
+/// encode what is encoded already.
+fn choose_format(offered: &[vk::SurfaceFormatKHR], bright: bool) -> Option<(vk::SurfaceFormatKHR, ScreenEncoding)> {
+    use ScreenEncoding::{ExtendedLinear, Hdr10, Srgb};
+    let above_white = [
+        (Format::R16G16B16A16_SFLOAT, Space::EXTENDED_SRGB_LINEAR_EXT, ExtendedLinear),
+        (Format::A2B10G10R10_UNORM_PACK32, Space::HDR10_ST2084_EXT, Hdr10),
+        (Format::A2R10G10B10_UNORM_PACK32, Space::HDR10_ST2084_EXT, Hdr10),
+    ];
+    let up_to_white = [
         Format::B8G8R8A8_UNORM,
         Format::R8G8B8A8_UNORM,
         Format::A8B8G8R8_UNORM_PACK32,
         Format::A2B10G10R10_UNORM_PACK32,
         Format::A2R10G10B10_UNORM_PACK32,
-    ];
-    let fits = |format: Format| {
-        move |offer: &&vk::SurfaceFormatKHR| (offer.format, offer.color_space) == (format, Space::SRGB_NONLINEAR)
+    ]
+    .map(|format| (format, Space::SRGB_NONLINEAR, Srgb));
+    let bright = above_white.into_iter().filter(|_| bright && shows_above_white(offered));
+    let find = |(format, space, encoding)| {
+        let fits = |offer: &&vk::SurfaceFormatKHR| (offer.format, offer.color_space) == (format, space);
+        offered.iter().find(fits).map(|offer| (*offer, encoding))
     };
-    wanted.into_iter().find_map(|format| offered.iter().find(fits(format)).copied())
+    bright.chain(up_to_white).find_map(find)
 }
 
 #[cfg(test)]
@@ -164,8 +186,21 @@ mod tests {
         let bytes = offer(Format::B8G8R8A8_UNORM, Space::SRGB_NONLINEAR);
         let encoded_twice = offer(Format::B8G8R8A8_SRGB, Space::SRGB_NONLINEAR);
         let other_space = offer(Format::B8G8R8A8_UNORM, Space::HDR10_ST2084_EXT);
-        assert_eq!(choose_format(&[encoded_twice, other_space, bytes]), Some(bytes));
-        assert_eq!(choose_format(&[encoded_twice, other_space]), None);
+        let offered = [encoded_twice, other_space, bytes];
+        assert_eq!(choose_format(&offered, false), Some((bytes, ScreenEncoding::Srgb)));
+        assert_eq!(choose_format(&[encoded_twice, other_space], true), None);
+    }
+
+    #[test]
+    fn light_above_white_is_shown_where_the_screen_says_so_and_it_is_wanted() {
+        let bytes = offer(Format::B8G8R8A8_UNORM, Space::SRGB_NONLINEAR);
+        let linear = offer(Format::R16G16B16A16_SFLOAT, Space::EXTENDED_SRGB_LINEAR_EXT);
+        let hdr10 = offer(Format::A2B10G10R10_UNORM_PACK32, Space::HDR10_ST2084_EXT);
+        assert_eq!(choose_format(&[bytes, hdr10, linear], true), Some((linear, ScreenEncoding::ExtendedLinear)));
+        assert_eq!(choose_format(&[bytes, hdr10], true), Some((hdr10, ScreenEncoding::Hdr10)));
+        // Not on a screen that would clip it, nor where it is not wanted.
+        assert_eq!(choose_format(&[bytes, linear], true), Some((bytes, ScreenEncoding::Srgb)));
+        assert_eq!(choose_format(&[bytes, hdr10, linear], false), Some((bytes, ScreenEncoding::Srgb)));
     }
 
     #[test]

@@ -55,8 +55,8 @@ pub fn into_gamut(linear: Bands) -> Bands {
 /// 1.3 (1 - 0.18) = 1.07.
 const CONTRAST: f64 = 1.3;
 
-/// 0.18^1.3 (1/0.18 - 1), with which the filmic curve leaves middle grey, 0.18, where it is.
-const MIDDLE_GREY: f64 = 0.490_225_17;
+/// Middle grey, which the filmic curve leaves where it is.
+const MIDDLE_GREY: f64 = 0.18;
 
 /// Radiance above which everything is white; it keeps the powers within f32.
 const WHITEST: f64 = 1e9;
@@ -68,16 +68,23 @@ const WHITEST: f64 = 1e9;
 /// hue does not turn as it does where each has its own curve, and all move towards white by the share t⁴: strong
 /// light is white, and a blue sky stays blue.
 pub fn tone_map(tone_map: ToneMap, exposed: Bands) -> Bands {
+    tone_map_up_to(1.0, tone_map, exposed)
+}
+
+/// The same to linear light in [0, headroom], for a screen that shows light above white: the sigmoid m^c H / (m^c + k) ends
+/// at the headroom H, and k leaves middle grey where it is.
+pub fn tone_map_up_to(headroom: f64, tone_map: ToneMap, exposed: Bands) -> Bands {
     let exposed = into_gamut(exposed);
     let strongest = exposed.iter().fold(0.0_f64, |strongest, &band| strongest.max(band));
     match tone_map {
-        ToneMap::None => exposed.map(|band| band.min(1.0)),
+        ToneMap::None => exposed.map(|band| band.min(headroom)),
         ToneMap::Filmic if strongest == 0.0 => [0.0; 3],
         ToneMap::Filmic => {
             let powered = strongest.min(WHITEST).powf(CONTRAST);
-            let t = powered / (powered + MIDDLE_GREY);
+            let half_point = MIDDLE_GREY.powf(CONTRAST) * (headroom / MIDDLE_GREY - 1.0);
+            let t = powered / (powered + half_point);
             let white = t.powi(4);
-            exposed.map(|band| t * (band / strongest * (1.0 - white) + white))
+            exposed.map(|band| headroom * t * (band / strongest * (1.0 - white) + white))
         }
     }
 }
@@ -99,6 +106,13 @@ pub fn picture(frame: &Frame, exposed: DMat3, curve: ToneMap) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_screen_with_headroom_shows_middle_grey_alike_and_the_sun_brighter() {
+        let bright = |exposed: f64| tone_map_up_to(5.0, ToneMap::Filmic, [exposed; 3])[0];
+        assert!((bright(0.18) - 0.18).abs() < 1e-12 && bright(1e6) > 4.99 && bright(1e6) <= 5.0);
+        assert!(bright(3.0) > filmic([3.0; 3])[0]);
+    }
 
     fn filmic(exposed: Bands) -> Bands {
         tone_map(ToneMap::Filmic, exposed)

@@ -6,6 +6,7 @@ mod error;
 mod exr_channel;
 mod exr_file;
 mod png_file;
+pub mod screen;
 
 pub use atomic_file::AtomicFile;
 pub use error::OutputError;

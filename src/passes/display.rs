@@ -1,10 +1,10 @@
-//! An 8-bit picture of the frame.
+//! A picture of the frame for a screen.
 
 use bytemuck::{Pod, Zeroable};
 
 use super::colour::padded_columns;
 use super::{Pass, Recording, RenderError};
-use crate::gpu::{ImageFormat, ImageShape, Work};
+use crate::gpu::{ImageFormat, ImageShape, ScreenEncoding, Work};
 use crate::output::display;
 use crate::plan::{Declaration, Facts, Fingerprint, Need};
 use crate::scene::ToneMap;
@@ -54,10 +54,13 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     };
     let Some(seen) = recording.resources.existing_image(seen).cloned() else { return Ok(()) };
     recording.insert_parameters("display", &DisplayBlock { to_srgb: padded_columns(to_srgb) });
-    recording.resources.image("picture_image", shape, ImageFormat::Rgba8Unorm)?;
-    let flags: &[&str] = match scene.display.tone_map {
-        ToneMap::Filmic => &["FILMIC"],
-        ToneMap::None => &[],
+    let encoding = recording.resources.screen;
+    recording.resources.image("picture_image", shape, encoding.image_format())?;
+    let mut flags = match encoding {
+        ScreenEncoding::Srgb => Vec::new(),
+        ScreenEncoding::ExtendedLinear => vec!["HDR"],
+        ScreenEncoding::Hdr10 => vec!["HDR", "PQ"],
     };
-    recording.dispatch(NAME, flags, &[("radiance_image", &seen)], Work::Invocations(shape.extent()))
+    flags.extend((scene.display.tone_map == ToneMap::Filmic).then_some("FILMIC"));
+    recording.dispatch(NAME, &flags, &[("radiance_image", &seen)], Work::Invocations(shape.extent()))
 }

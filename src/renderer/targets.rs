@@ -1,7 +1,7 @@
 //! Frames drawn into images of the host's, which stay on the device.
 
 use super::{Renderer, Timings};
-use crate::gpu::{GpuImage, ImageFormat, ImageShape, NextUse};
+use crate::gpu::{GpuImage, ImageFormat, ImageShape, NextUse, ScreenEncoding};
 use crate::passes::{CLOUDS, FRAME, RenderError, TABLES};
 use crate::plan::{Facts, Outputs, Settings};
 use crate::probe::Orders;
@@ -17,8 +17,10 @@ pub struct Targets {
     pub transmittance: Option<GpuImage>,
     /// Distance along each pixel's ray, m; `R32Float`.
     pub distance: Option<GpuImage>,
-    /// What a screen shows, sRGB-encoded; `Rgba8Unorm`.
+    /// What a screen shows; of its encoding's format, `Rgba8Unorm` for sRGB.
     pub picture: Option<GpuImage>,
+    /// How the picture is encoded.
+    pub encoding: ScreenEncoding,
 }
 
 impl Targets {
@@ -38,7 +40,7 @@ impl Targets {
             ("radiance", radiance, &self.radiance, ImageFormat::Rgba32Float),
             ("transmittance", transmittance, &self.transmittance, ImageFormat::Rgba32Float),
             ("distance", "distance_image", &self.distance, ImageFormat::R32Float),
-            ("the picture", "picture_image", &self.picture, ImageFormat::Rgba8Unorm),
+            ("the picture", "picture_image", &self.picture, self.encoding.image_format()),
         ];
         all.into_iter().filter_map(|(what, name, image, format)| Some((what, name, image.as_ref()?, format)))
     }
@@ -70,7 +72,9 @@ impl Renderer {
             self.forget_writers_of(name);
         }
         self.resources.targets = targets.all(spectral).map(|(_, name, image, _)| (name, image.clone(), next)).collect();
+        self.resources.screen = targets.encoding;
         let timings = self.render_nothing_read(scene, settings, targets.outputs());
+        self.resources.screen = ScreenEncoding::Srgb;
         // They are the host's again: the next frame must not draw into them unasked.
         self.resources.targets.clear();
         for (_, name, _, _) in targets.all(spectral) {
@@ -89,7 +93,7 @@ impl Renderer {
         if scene.spectrum.group_count() > 1 {
             return self.execute_groups(scene, settings, outputs);
         }
-        let facts = Facts::new(scene, settings, Orders::All, outputs)?;
+        let facts = Facts::new(scene, settings, Orders::All, outputs)?.in_picture();
         let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
         self.execute("frame", &facts, &passes, |_| Ok(()))
     }

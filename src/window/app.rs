@@ -25,7 +25,7 @@ use super::sky::{News, Picture, Sky, View};
 use super::watch::{Changed, Watch};
 use super::wipe::Shown;
 use super::{Options, WindowError};
-use crate::gpu::{Gpu, GpuImage, Placed, Presenter};
+use crate::gpu::{Gpu, GpuImage, Placed, Presenter, ScreenEncoding};
 use crate::passes::FRAME;
 
 /// Time between two steps of a flight.
@@ -100,6 +100,7 @@ struct Asked {
     settings: crate::plan::Settings,
     size: [u32; 2],
     scale: f64,
+    encoding: ScreenEncoding,
 }
 
 impl App {
@@ -126,6 +127,7 @@ impl App {
         session.device = gpu.info().name.clone();
         session.resolution.touch(Instant::now());
         let presenter = Presenter::new(&gpu)?;
+        session.offers_above_white = presenter.offers_above_white()?;
         let proxy = self.proxy.clone();
         // After the loop has ended nobody listens.
         let sky = Sky::start(gpu, move |news| drop(proxy.send_event(Event::Sky(news))))?;
@@ -291,20 +293,22 @@ impl Open {
             return;
         }
         let session = &self.session;
-        let at_rest = session.resolution.is_at_rest(now) && session.resolution.fixed.is_none();
+        let still = session.resolution.is_at_rest(now);
+        let at_rest = still && session.resolution.fixed.is_none();
         let scale = if at_rest { 1.0 } else { session.resolution.scale() };
-        let (scene, settings) = (session.document.scene().clone(), session.settings());
+        let settings = if still { session.settings() } else { session.settings_in_motion() };
+        let (scene, encoding) = (session.document.scene().clone(), session.encoding);
         // A scale that has only been found anew is no reason for another picture of the same.
         let same = self.asked.as_ref().is_some_and(|asked| {
-            (&asked.scene, asked.settings, asked.size) == (&scene, settings, size)
+            (&asked.scene, asked.settings, asked.size, asked.encoding) == (&scene, settings, size, encoding)
                 && (asked.scale == scale || (!at_rest && session.resolution.fixed.is_none()))
         });
         if same {
             return;
         }
-        let view = View { scene: session.scene_of_size(size, scale), settings, scale, may_stop: at_rest };
+        let view = View { scene: session.scene_of_size(size, scale), settings, scale, encoding, may_stop: at_rest };
         self.sky.show(view);
-        self.asked = Some(Asked { scene, settings, size, scale });
+        self.asked = Some(Asked { scene, settings, size, scale, encoding });
     }
 
     fn motion(&self) -> super::fly::Motion {
@@ -326,13 +330,19 @@ impl Open {
         self.panel_at = (delay_s < 3600.0).then(|| started + Duration::from_secs_f64(delay_s.max(TICK.as_secs_f64())));
         self.window.set_title(&self.session.title());
         self.watch.follow(self.session.document.path());
+        self.presenter.want_above_white(self.session.kept.above_white);
         if self.hidden || !self.presenter.prepare(self.size())? {
             return Ok(());
         }
+        let encoding = self.presenter.encoding();
+        self.session.encoding = encoding;
         let whole = [0.0, 0.0, 1.0, 1.0];
         let laid_out = started.elapsed();
-        let real_time = self.picture.as_ref().map(|picture| &picture.image);
-        let traced = self.comparison.as_ref().and_then(|comparison| comparison.images.as_ref());
+        // Pictures for another screen than the window has moved to are not shown.
+        let real_time =
+            self.picture.as_ref().filter(|picture| picture.encoding == encoding).map(|picture| &picture.image);
+        let compared = self.comparison.as_ref().filter(|comparison| comparison.encoding == encoding);
+        let traced = compared.and_then(|comparison| comparison.images.as_ref());
         let at = self.session.wipe.at;
         let sides = [[0.0, 0.0, at, 1.0], [at, 0.0, 1.0, 1.0]];
         let image = |shown: Shown| match (shown, traced) {
@@ -366,7 +376,8 @@ impl Open {
         }
         let (scene, size) = (self.session.document.scene(), self.window.inner_size().into());
         let settings = self.session.settings();
-        let seen = |comparison: &Comparison| comparison.is_of(scene, size, settings);
+        let encoding = self.session.encoding;
+        let seen = |comparison: &Comparison| comparison.is_of(scene, size, settings) && comparison.encoding == encoding;
         if self.comparison.as_ref().is_some_and(seen) {
             return;
         }

@@ -2,12 +2,14 @@
 
 use std::collections::VecDeque;
 
-use egui::{ClippedPrimitive, Context, FullOutput, TextureId, TexturesDelta, ViewportId};
+use egui::epaint::Primitive;
+use egui::{ClippedPrimitive, Color32, Context, FontDefinitions, FullOutput, TextureId, TexturesDelta, ViewportId};
 use egui_ash_renderer::{DynamicRendering, Options, Renderer, RendererError};
 use winit::event::WindowEvent;
 use winit::window::Window;
 
-use crate::gpu::{FRAMES_IN_FLIGHT, GpuError, OverlayTarget, Placed, Presenter};
+use crate::gpu::{FRAMES_IN_FLIGHT, GpuError, OverlayTarget, Placed, Presenter, ScreenEncoding};
+use crate::output::screen::{WHITE_CD_PER_M2, perceptual_quantizer};
 
 /// Why the panel could not be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -25,6 +27,8 @@ pub struct Interface {
     context: Context,
     state: egui_winit::State,
     renderer: Option<Renderer>,
+    /// What the renderer was made for.
+    encoding: ScreenEncoding,
     primitives: Vec<ClippedPrimitive>,
     pixels_per_point: f32,
     /// Textures that frames in flight may still read.
@@ -44,6 +48,7 @@ impl Interface {
             context,
             state,
             renderer: None,
+            encoding: ScreenEncoding::Srgb,
             primitives: Vec::new(),
             pixels_per_point: 1.0,
             unused: VecDeque::new(),
@@ -80,11 +85,16 @@ impl Interface {
     /// # Errors
     /// Those of the device.
     pub fn present(&mut self, presenter: &mut Presenter, pictures: &[Placed]) -> Result<bool, InterfaceError> {
-        self.start(presenter)?;
+        if !self.start(presenter)? {
+            return Ok(false);
+        }
         let Some(renderer) = &mut self.renderer else { return Ok(false) };
         let changes = std::mem::take(&mut self.changes);
         if !changes.set.is_empty() {
             presenter.upload(|queue, pool| renderer.set_textures(queue, pool, &changes.set))?;
+        }
+        if self.encoding == ScreenEncoding::Hdr10 {
+            dim(&mut self.primitives);
         }
         let (primitives, pixels_per_point) = (&self.primitives, self.pixels_per_point);
         let shown = presenter.present(pictures, |target: &OverlayTarget| {
@@ -100,19 +110,48 @@ impl Interface {
         Ok(shown)
     }
 
-    /// Makes the renderer when there is something to draw on.
-    fn start(&mut self, presenter: &Presenter) -> Result<(), InterfaceError> {
-        let (Some(color_attachment_format), None) = (presenter.format(), &self.renderer) else { return Ok(()) };
+    /// Makes the renderer when there is something to draw on, and anew when the screen wants another encoding; false where
+    /// the panel's textures have to come first, with the next layout.
+    fn start(&mut self, presenter: &mut Presenter) -> Result<bool, InterfaceError> {
+        let Some(color_attachment_format) = presenter.format() else { return Ok(false) };
+        let encoding = presenter.encoding();
+        if self.renderer.is_some() && encoding == self.encoding {
+            return Ok(true);
+        }
+        let first = self.renderer.is_none();
+        presenter.wait_idle()?;
+        (self.renderer, self.encoding) = (None, encoding);
+        self.unused.clear();
         let raw = presenter.raw_device();
         let (instance, hardware, device) = (raw.instance, raw.physical_device, raw.device.clone());
         let rendering = DynamicRendering { color_attachment_format, depth_attachment_format: None };
-        let options = Options { in_flight_frames: FRAMES_IN_FLIGHT + 1, ..Options::default() };
+        // In linear light the panel is blended as light, and its white is that of the screen's own surfaces.
+        let srgb_framebuffer = encoding == ScreenEncoding::ExtendedLinear;
+        let options = Options { in_flight_frames: FRAMES_IN_FLIGHT + 1, srgb_framebuffer, ..Options::default() };
         self.renderer = Some(Renderer::with_default_allocator(instance, hardware, device, rendering, options)?);
-        Ok(())
+        if !first {
+            // egui gives its glyphs to a renderer once; new fonts are new glyphs.
+            self.changes = TexturesDelta::default();
+            self.context.set_fonts(FontDefinitions::default());
+        }
+        Ok(first)
     }
 
     /// Gives up what is on the device; before the presenter goes.
     pub fn close(&mut self) {
         self.renderer = None;
+    }
+}
+
+/// Colours of the panel on a screen whose codes reach up to 10 000 cd/m²: white as bright as that of the pictures.
+fn dim(primitives: &mut [ClippedPrimitive]) {
+    let white = perceptual_quantizer(WHITE_CD_PER_M2);
+    for primitive in primitives {
+        let Primitive::Mesh(mesh) = &mut primitive.primitive else { continue };
+        for vertex in &mut mesh.vertices {
+            let [red, green, blue, alpha] = vertex.color.to_array();
+            let [red, green, blue] = [red, green, blue].map(|byte| (f64::from(byte) * white).round() as u8);
+            vertex.color = Color32::from_rgba_premultiplied(red, green, blue, alpha);
+        }
     }
 }

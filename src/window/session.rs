@@ -13,7 +13,8 @@ use super::history::History;
 use super::resolution::Resolution;
 use super::settings::Settings as Kept;
 use super::shortcuts::Action;
-use crate::plan::{MultipleScattering, Quality, Settings};
+use crate::gpu::ScreenEncoding;
+use crate::plan::{MultipleScattering, Quality, Settings, Skipping};
 use crate::renderer::Timings;
 use crate::scene::{Scene, SceneError};
 
@@ -62,6 +63,10 @@ pub struct Session {
     pub asked: Vec<Action>,
     /// Where the device's name is shown.
     pub device: String,
+    /// How the screen wants pictures.
+    pub encoding: ScreenEncoding,
+    /// Whether it could show light above white.
+    pub offers_above_white: bool,
 }
 
 /// Numbers of [`Session::faults`].
@@ -94,12 +99,19 @@ impl Session {
             help: false,
             asked: Vec::new(),
             device: String::new(),
+            encoding: ScreenEncoding::Srgb,
+            offers_above_white: false,
         }
     }
 
     /// The numbers of the quality.
     pub fn settings(&self) -> Settings {
         Settings { multiple_scattering: self.multiple_scattering, ..Settings::of(self.quality) }
+    }
+
+    /// The same for pictures that follow each other: while time runs, tables may lag behind the sun.
+    pub fn settings_in_motion(&self) -> Settings {
+        Settings { skipping: Skipping::IN_SEQUENCE, ..self.settings() }
     }
 
     /// The scene as a window of so many pixels sees it.

@@ -25,6 +25,8 @@ pub struct Settings {
     pub fixed_scale: Option<f64>,
     /// Low, medium, high or ultra.
     pub quality: String,
+    /// Whether light above white is shown where the screen can.
+    pub above_white: bool,
     /// Seconds of the scene in one of the clock.
     pub time_rate: f64,
     /// Share of the window's side in which the truth is computed.
@@ -39,6 +41,7 @@ impl Default for Settings {
             budget_ms: 33.0,
             fixed_scale: None,
             quality: "medium".to_owned(),
+            above_white: true,
             time_rate: 600.0,
             truth_scale: 0.25,
         }

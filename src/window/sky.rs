@@ -5,7 +5,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::gpu::{Gpu, GpuImage, ImageFormat, ImageShape, NextUse, Pace};
+use crate::gpu::{Gpu, GpuImage, ImageShape, NextUse, Pace, ScreenEncoding};
 use crate::passes::RenderError;
 use crate::plan::{Outputs, Settings};
 use crate::renderer::{Rendered, Renderer, Targets, Timings};
@@ -23,6 +23,8 @@ pub struct View {
     pub settings: Settings,
     /// Share of the window's side that this is.
     pub scale: f64,
+    /// How the window's screen wants it.
+    pub encoding: ScreenEncoding,
     /// Whether something newer may stop it before it is done.
     pub may_stop: bool,
 }
@@ -37,6 +39,8 @@ pub struct Picture {
     pub took: Duration,
     /// As asked for.
     pub scale: f64,
+    /// As asked for.
+    pub encoding: ScreenEncoding,
 }
 
 /// What the thread has to say.
@@ -195,24 +199,25 @@ impl Worker {
 
     fn render(&mut self, view: &View) -> Result<Picture, RenderError> {
         let started = Instant::now();
-        let image = self.image(view.scene.camera.width, view.scene.camera.height)?;
-        let targets = Targets { picture: Some(image.clone()), ..Targets::default() };
+        let image = self.image(view.scene.camera.width, view.scene.camera.height, view.encoding)?;
+        let targets = Targets { picture: Some(image.clone()), encoding: view.encoding, ..Targets::default() };
         let timings = match view.may_stop {
             // At rest every pixel is computed, however long that takes.
             true => self.renderer.render_to(&view.scene, view.settings, &targets, NextUse::Copy)?,
             false => self.renderer.render_next_to(&view.scene, view.settings, &targets, NextUse::Copy)?,
         };
-        Ok(Picture { image, timings, took: started.elapsed(), scale: view.scale })
+        Ok(Picture { image, timings, took: started.elapsed(), scale: view.scale, encoding: view.encoding })
     }
 
     /// An image that nobody else holds.
-    fn image(&mut self, width: u32, height: u32) -> Result<GpuImage, RenderError> {
-        let shape = ImageShape::D2(width, height);
-        self.images.retain(|image| image.shape() == shape || image.is_shared());
-        if let Some(free) = self.images.iter().find(|image| image.shape() == shape && !image.is_shared()) {
+    fn image(&mut self, width: u32, height: u32, encoding: ScreenEncoding) -> Result<GpuImage, RenderError> {
+        let (shape, format) = (ImageShape::D2(width, height), encoding.image_format());
+        let fits = |image: &GpuImage| (image.shape(), image.format()) == (shape, format);
+        self.images.retain(|image| fits(image) || image.is_shared());
+        if let Some(free) = self.images.iter().find(|image| fits(image) && !image.is_shared()) {
             return Ok(free.clone());
         }
-        let image = self.renderer.gpu().image("view", shape, ImageFormat::Rgba8Unorm)?;
+        let image = self.renderer.gpu().image("view", shape, format)?;
         self.images.push(image.clone());
         Ok(image)
     }

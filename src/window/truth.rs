@@ -5,6 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
+use welkin_lut::Bands;
+
 use crate::frame::Frame;
 use crate::output::{OutputError, display};
 use crate::reference::picture::{CameraView, Film, Observer, Shard, Stop, expose};
@@ -17,15 +20,18 @@ const MOST_WALKS: u64 = 4096;
 /// Time between two pictures of an exposure.
 const BETWEEN: Duration = Duration::from_millis(1500);
 
+/// Linear light of agreement.
+const GREY: f64 = 0.216;
+
 /// Relative difference that is shown in full colour.
 const FULL_COLOUR: f64 = 0.1;
 
-/// How far an exposure has come, as bytes that a screen shows: red, green, blue and 255 a pixel.
+/// How far an exposure has come, as linear sRGB that a screen shows.
 pub struct Exposed {
     /// The truth.
-    pub truth: Vec<[u8; 4]>,
+    pub truth: Vec<Bands>,
     /// How much brighter (red) or darker (blue) the real-time frame is; none before that frame is there.
-    pub difference: Option<Vec<[u8; 4]>>,
+    pub difference: Option<Vec<Bands>>,
     /// Width and height, pixels.
     pub size: [u32; 2],
     /// In words.
@@ -40,9 +46,13 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Starts to trace what a scene's camera sees; `tell` is called on other threads, with [`SolverError`] for a scene that
+    /// Starts to trace what a scene's camera sees, for a screen that shows so many whites; `tell` is called on other threads, with [`SolverError`] for a scene that
     /// the path tracer cannot trace.
-    pub fn start(scene: Scene, tell: impl Fn(Result<Exposed, SolverError>) + Send + Sync + 'static) -> Self {
+    pub fn start(
+        scene: Scene,
+        headroom: f64,
+        tell: impl Fn(Result<Exposed, SolverError>) + Send + Sync + 'static,
+    ) -> Self {
         let (stop, real_time) = (Arc::new(AtomicBool::new(false)), Arc::new(Mutex::new(None)));
         let (stopped, compared) = (stop.clone(), real_time.clone());
         let thread = std::thread::Builder::new().name("truth".to_owned()).spawn(move || {
@@ -51,7 +61,8 @@ impl Truth {
                 Ok(view) => view,
                 Err(error) => return tell(Err(error)),
             };
-            let watch = Watch { scene, stop: stopped, real_time: compared, tell, shown: Mutex::new(None), view };
+            let watch =
+                Watch { scene, headroom, stop: stopped, real_time: compared, tell, shown: Mutex::new(None), view };
             // One core is left to the window and the sky.
             let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
             let pool = rayon::ThreadPoolBuilder::new().num_threads(cores.saturating_sub(1).max(1)).build();
@@ -81,6 +92,7 @@ impl Drop for Truth {
 
 struct Watch<T> {
     scene: Scene,
+    headroom: f64,
     view: CameraView,
     stop: Arc<AtomicBool>,
     real_time: Arc<Mutex<Option<Frame>>>,
@@ -100,7 +112,11 @@ impl<T: Fn(Result<Exposed, SolverError>) + Send + Sync> Observer for Watch<T> {
         }
         let frame = self.view.develop(film);
         let exposed = display::exposed_srgb(&self.scene);
-        let truth = display::picture(&frame, exposed, self.scene.display.tone_map);
+        let curve = self.scene.display.tone_map;
+        let shown_as = |radiance: &[f32; 3]| {
+            let linear = exposed * DVec3::from_array(radiance.map(f64::from));
+            display::tone_map_up_to(self.headroom, curve, linear.to_array())
+        };
         let real_time = self.real_time.lock().unwrap_or_else(PoisonError::into_inner);
         let walks = film.pixels.iter().map(|pixel| pixel.batches).min().unwrap_or(0);
         let state = match level {
@@ -109,7 +125,7 @@ impl<T: Fn(Result<Exposed, SolverError>) + Send + Sync> Observer for Watch<T> {
         };
         tracing::info!("{state}");
         (self.tell)(Ok(Exposed {
-            truth: truth.chunks_exact(3).map(|rgb| [rgb[0], rgb[1], rgb[2], 255]).collect(),
+            truth: frame.radiance.iter().map(shown_as).collect(),
             difference: real_time.as_ref().map(|real_time| difference(real_time, &frame)),
             size: [frame.width, frame.height],
             state,
@@ -125,17 +141,17 @@ impl<T: Fn(Result<Exposed, SolverError>) + Send + Sync> Observer for Watch<T> {
 
 /// By how much a frame differs from the truth, relative to the truth's mean over the bands: grey where they agree, full red
 /// where it is 10 % or more too bright, full blue where it is as much too dark; black where nothing is traced yet.
-fn difference(frame: &Frame, truth: &Frame) -> Vec<[u8; 4]> {
+fn difference(frame: &Frame, truth: &Frame) -> Vec<Bands> {
     let mean = |radiance: &[f32; 3]| radiance.iter().map(|&band| f64::from(band)).sum::<f64>() / 3.0;
     let pixel = |(frame, truth): (&[f32; 3], &[f32; 3])| {
         let (frame, truth) = (mean(frame), mean(truth));
         if truth <= 0.0 {
-            return [0, 0, 0, 255];
+            return [0.0; 3];
         }
         let share = ((frame / truth - 1.0) / FULL_COLOUR).clamp(-1.0, 1.0);
-        let towards = |full: f64| (128.0 + share.abs() * (full - 128.0)).round() as u8;
-        let (warm, cold) = (towards(255.0), towards(30.0));
-        if share >= 0.0 { [warm, cold, cold, 255] } else { [cold, cold, warm, 255] }
+        let towards = |full: f64| GREY + share.abs() * (full - GREY);
+        let (warm, cold) = (towards(1.0), towards(0.01));
+        if share >= 0.0 { [warm, cold, cold] } else { [cold, cold, warm] }
     };
     frame.radiance.iter().zip(&truth.radiance).map(pixel).collect()
 }
@@ -151,9 +167,9 @@ mod tests {
         frame.radiance = vec![[1.0; 3], [1.2; 3], [0.8; 3], [1.0; 3]];
         truth.radiance = vec![[1.0; 3], [1.0; 3], [1.0; 3], [0.0; 3]];
         let shown = difference(&frame, &truth);
-        assert_eq!(shown, [[128, 128, 128, 255], [255, 30, 30, 255], [30, 30, 255, 255], [0, 0, 0, 255]]);
+        assert_eq!(shown, [[GREY; 3], [1.0, 0.01, 0.01], [0.01, 0.01, 1.0], [0.0; 3]]);
         frame.radiance[0] = [1.05; 3];
         let [red, green, ..] = difference(&frame, &truth)[0];
-        assert!(red > 180 && green < 90, "half of the way: {red}, {green}");
+        assert!(red > 0.6 && green < 0.12, "half of the way: {red}, {green}");
     }
 }

@@ -1,6 +1,6 @@
 //! What accuracy is worth, and how fast pictures come.
 
-use egui::{Color32, ComboBox, Slider, Stroke, Ui, pos2, vec2};
+use egui::{Checkbox, Color32, ComboBox, Slider, Stroke, Ui, pos2, vec2};
 
 use crate::plan::{MultipleScattering, Quality};
 use crate::window::graph::Graph;
@@ -44,6 +44,9 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
         resolution.fixed = None;
     }
     session.kept.fixed_scale = resolution.fixed;
+    let offered = session.offers_above_white;
+    let light = Checkbox::new(&mut session.kept.above_white, "light above white");
+    ui.add_enabled(offered, light).on_disabled_hover_text("this screen shows none");
     graph(ui, &session.graph, session.resolution.budget_ms as f32);
     ui.label(&session.device);
 }
