@@ -13,7 +13,7 @@ use crate::foreground::Foreground;
 use crate::frame::Frame;
 use crate::gpu::{Clock, DeviceRequest, Gpu, Pace};
 use crate::passes::{
-    self, CLOUDS, FRAME, Pass, Recording, RenderError, Resources, ShaderSources, TABLES, record_probe,
+    self, CLOUDS, FRAME, ParameterBuffers, Pass, Recording, RenderError, Resources, ShaderSources, TABLES, record_probe,
 };
 use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Sequence, Settings, Surface, TableFormat};
 use crate::probe::{Orders, Ray, RayRadiance};
@@ -114,6 +114,11 @@ impl Renderer {
     /// Keeps tables no wider than this, as on a device that can interpolate nothing wider.
     pub fn limit_tables(&mut self, widest: TableFormat) {
         self.resources.widest_tables = widest;
+    }
+
+    /// Has shaders find their parameters elsewhere than this device likes best ([`Gpu::parameter_buffers`]).
+    pub fn place_parameters(&mut self, buffers: ParameterBuffers) {
+        self.resources.parameter_buffers = buffers;
     }
 
     /// The device.

@@ -7,7 +7,7 @@ use welkin::gpu::{
     AddressMode, BufferKind, Clock, DeviceRequest, Filter, Filtering, Gpu, GpuError, GpuImage, ImageFormat, ImageShape,
     Pipeline, Resource, Validation, Work,
 };
-use welkin_shaders::{Definitions, Parameters, Shader, Sources};
+use welkin_shaders::{Definitions, ParameterBuffers, Shader, Sources};
 
 /// Writes to every texel its own coordinates, times a parameter.
 const COORDINATES: &str = "
@@ -340,13 +340,10 @@ fn dispatches_with_ever_new_parameters_leave_nothing_behind() {
             assert_eq!(gpu.population(), population, "{parameters:?}");
             resident_kib().saturating_sub(before)
         };
-        // Less than what a single compiled shader takes, for each dispatch.
-        let kept = growth_kib(gpu.parameters());
-        assert!(kept < 100 * 20, "{kept} KiB");
-        // Control: the driver of which this was learnt keeps what it compiles for uniform buffers.
-        if gpu.info().driver_version.contains("Mesa 22") {
-            let kept = growth_kib(Parameters::Uniform);
-            assert!(kept > 100 * 40, "uniform buffers: {kept} KiB");
+        for parameters in [ParameterBuffers::Uniform, ParameterBuffers::Storage] {
+            // Less than what a single compiled shader takes, for each dispatch.
+            let kept = growth_kib(parameters);
+            assert!(kept < 100 * 20, "{parameters:?}: {kept} KiB");
         }
         // Control: what is kept is counted.
         let before = gpu.population();

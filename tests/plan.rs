@@ -8,6 +8,7 @@ use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{Decision, Outputs, Plan, Quality, Settings, Skipping};
 use welkin::renderer::{Rendered, Renderer};
 use welkin::scene::{EnvironmentLight, Light, Scene};
+use welkin_shaders::ParameterBuffers;
 
 const PICTURE: Outputs = Outputs { capture: true, picture: true };
 
@@ -158,33 +159,6 @@ fn what_depends_on_nothing_that_changed_is_reused_and_gives_the_same_picture() {
     assert_ne!(rendered[0].frame, rendered[3].frame);
 }
 
-/// The largest relative difference of a pixel.
-fn difference(exact: &Rendered, other: &Rendered) -> f64 {
-    let pixels = exact.frame.radiance.as_flattened().iter().zip(other.frame.radiance.as_flattened());
-    pixels.map(|(exact, other)| f64::from((exact - other).abs()) / (f64::from(*exact) + 1e-11)).fold(0.0, f64::max)
-}
-
-/// A sun that sinks by 0.01° a frame from an elevation: the largest error of a pixel in any frame, and how often each pass
-/// ran and all were reused.
-fn sinking_sun(from_deg: f64, frames: u32, skipping: Skipping) -> (f64, usize, usize) {
-    let [mut exact, mut lagging] = [(); 2].map(|()| Renderer::new(&DeviceRequest::default()).unwrap());
-    let mut scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/hills.toml")).unwrap();
-    (scene.camera.width, scene.camera.height) = (24, 14);
-    let (mut worst, mut ran, mut together) = (0.0_f64, 0, 0);
-    for frame in 0..frames {
-        let Light::Directional(sun) = &mut scene.lights[0] else { panic!("the sun is directional") };
-        sun.direction.elevation_rad = (from_deg - 0.01 * f64::from(frame)).to_radians();
-        let settings = Settings { skipping, ..Settings::of(Quality::Low) };
-        let now = exact.render(&scene, Settings::of(Quality::Low), Outputs::default()).unwrap();
-        let late = lagging.render(&scene, settings, Outputs::default()).unwrap();
-        worst = worst.max(difference(&now, &late));
-        let tables = ["sky_view", "aerial_perspective"].map(|name| late.timings.plan.decision(name));
-        let running = tables.iter().filter(|decision| **decision == Some(Decision::Run)).count();
-        (ran, together) = (ran + running, together + usize::from(frame > 0 && running == 2));
-    }
-    (worst, ran, together)
-}
-
 #[test]
 fn a_hundred_frames_without_change_run_no_pass_and_a_moving_sun_runs_what_would_show() {
     let _alone = common::alone();
@@ -202,42 +176,38 @@ fn a_hundred_frames_without_change_run_no_pass_and_a_moving_sun_runs_what_would_
     sun.direction.elevation_rad += 1e-9;
     settings.skipping = Skipping::USUAL;
     assert_eq!(names(&renderer.render(&scene, settings, PICTURE).unwrap().timings.plan, Decision::Run)[0], "sky_view");
-
-    // By day few frames compute tables, no frame two of them, and no pixel is off by more than the share.
-    let share = Skipping::IN_SEQUENCE.lag_share;
-    let (worst, ran, together) = sinking_sun(40.0, 100, Skipping::IN_SEQUENCE);
-    println!("from 40°: {worst}, {ran} tables, {together} frames with two");
-    assert!(worst < share && ran < 60 && together == 0, "{worst} {ran} {together}");
-    // At the horizon and below the same rules hold, with more work.
-    for from_deg in [0.3, -6.0] {
-        let (worst, ran, _) = sinking_sun(from_deg, 40, Skipping::IN_SEQUENCE);
-        println!("from {from_deg}°: {worst}, {ran} tables");
-        assert!(worst < share, "from {from_deg}°: {worst}, {ran} tables");
-    }
-    // Control: ten times the lag shows.
-    let careless = Skipping { lag_share: 10.0 * share, ..Skipping::IN_SEQUENCE };
-    let (worst, ..) = sinking_sun(0.3, 40, careless);
-    assert!(worst > share, "{worst}");
 }
 
 #[test]
 fn fifty_frames_of_changing_scene_and_size_leave_nothing_behind() {
     let _alone = common::alone();
-    let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap();
-    let mut scene = noon();
-    let mut frame = |step: u32| {
-        (scene.camera.width, scene.camera.height) = if step.is_multiple_of(2) { (160, 90) } else { (80, 45) };
-        scene.display.exposure_ev = f64::from(step) * 0.1;
-        let Light::Directional(sun) = &mut scene.lights[0] else { panic!("the sun is directional") };
-        sun.direction.elevation_rad = 1.0 - f64::from(step) * 0.01;
-        renderer.render(&scene, Settings::of(Quality::Low), PICTURE).unwrap();
-        (renderer.gpu().population(), common::resident_kib())
+    let growth_kib = |parameters: Option<ParameterBuffers>| {
+        let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap();
+        if let Some(parameters) = parameters {
+            renderer.place_parameters(parameters);
+        }
+        let mut scene = noon();
+        let mut frame = |step: u32| {
+            (scene.camera.width, scene.camera.height) = if step.is_multiple_of(2) { (160, 90) } else { (80, 45) };
+            scene.display.exposure_ev = f64::from(step) * 0.1;
+            let Light::Directional(sun) = &mut scene.lights[0] else { panic!("the sun is directional") };
+            sun.direction.elevation_rad = 1.0 - f64::from(step) * 0.01;
+            renderer.render(&scene, Settings::of(Quality::Low), PICTURE).unwrap();
+            (renderer.gpu().population(), common::resident_kib())
+        };
+        let warm = (0..10).map(&mut frame).last().unwrap();
+        let last = (10..60).map(&mut frame).last().unwrap();
+        assert_eq!(last.0, warm.0);
+        let is_mesa_22 = renderer.gpu().info().driver_version.contains("Mesa 22");
+        (last.1.saturating_sub(warm.1), is_mesa_22)
     };
-    let warm = (0..10).map(&mut frame).last().unwrap();
-    let last = (10..60).map(&mut frame).last().unwrap();
-    assert_eq!(last.0, warm.0);
     // Frames of this size have 0.5 MB: keeping them, or the code of one dispatch of each, would take 25 MB.
-    assert!(last.1 < warm.1 + 5 * 1024, "from {} to {} KiB", warm.1, last.1);
+    let (grown, is_mesa_22) = growth_kib(None);
+    assert!(grown < 5 * 1024, "{grown} KiB");
+    // Control: the driver of which this was learnt keeps what it compiles for uniform buffers.
+    let (grown, _) = growth_kib(Some(ParameterBuffers::Uniform));
+    println!("uniform buffers: {grown} KiB");
+    assert!(!is_mesa_22 || grown > 10 * 1024, "uniform buffers: {grown} KiB");
 }
 
 #[test]

@@ -106,8 +106,8 @@ fn tiny(skipping: Skipping) -> Settings {
         source_grid: SourceGrid { ground: 2, low: 2, high: 2, azimuths: 2 },
         source_size: [4, 4],
         source_orders: 3,
-        sky_view_size: [8, 16],
-        froxel_size: [4, 8, 8],
+        // In haze so dense that it hides mountains, coarse froxels are off by more than the mountains.
+        froxel_size: [4, 48, 32],
         clouds: CloudSettings {
             sweeps: 2,
             ordinate_cells: 16,
@@ -176,16 +176,15 @@ fn what_is_out_of_the_picture_does_not_show_in_it() {
     let nearly_clear = Skipping { hidden_depth: 0.5, ..Skipping::USUAL };
     // Each effect, or air alone, with how many views are tried, how many must be changed, and rules that are wrong.
     let cases = [
-        (None, 60, 15, vec![out_of_view(0.5)]),
-        (Some(Effect::Mountains), 100, 40, vec![out_of_view(0.1), nearly_clear]),
-        (Some(Effect::Clouds), 60, 10, vec![out_of_view(0.1)]),
+        (None, 40, 10, vec![out_of_view(0.5)]),
+        (Some(Effect::Mountains), 40, 7, vec![out_of_view(0.1), nearly_clear]),
+        (Some(Effect::Clouds), 24, 3, vec![out_of_view(0.1)]),
     ];
     for (effect, views, at_least, wrong) in cases {
         let (worst, changed) = difference_in_views(&mut renderers, effect, Skipping::USUAL, views);
-        println!("{effect:?}: {worst} in {changed} of {views}");
         assert!(worst < 0.005 && changed >= at_least, "{effect:?}: {worst} in {changed} of {views} views");
         for rules in wrong {
-            let (worst, _) = difference_in_views(&mut renderers, effect, rules, views);
+            let (worst, _) = difference_in_views(&mut renderers, effect, rules, 24);
             assert!(worst > 0.005, "{effect:?}: {rules:?} goes unnoticed: {worst}");
         }
     }

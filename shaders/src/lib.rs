@@ -21,5 +21,5 @@ pub use error::{Location, ShaderError};
 pub use export::{Exported, Language, UnknownLanguage};
 pub use naga::StorageFormat;
 pub use reflect::{Access, Binding, BindingKind, Dimension, Field, StructLayout};
-pub use shader::{Definition, Definitions, Parameters, Shader, compile};
+pub use shader::{Definition, Definitions, ParameterBuffers, Shader, compile};
 pub use sources::Sources;

@@ -25,7 +25,7 @@ pub enum Definition {
 
 /// Where a compiled pass finds what its WGSL declares as `var<uniform>`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Parameters {
+pub enum ParameterBuffers {
     /// In uniform buffers.
     #[default]
     Uniform,
@@ -66,7 +66,7 @@ impl Shader {
     /// Any [`ShaderError`] but [`ShaderError::Unreadable`]; what is wrong in the WGSL comes with file, line and column,
     /// also where the fault is in an imported module.
     pub fn from_sources(sources: &Sources, pass: &str, definitions: &Definitions) -> Result<Self, ShaderError> {
-        Self::with_parameters(sources, pass, definitions, Parameters::Uniform)
+        Self::with_parameters(sources, pass, definitions, ParameterBuffers::Uniform)
     }
 
     /// The same with parameters in another kind of buffers.
@@ -77,11 +77,11 @@ impl Shader {
         sources: &Sources,
         pass: &str,
         definitions: &Definitions,
-        parameters: Parameters,
+        buffers: ParameterBuffers,
     ) -> Result<Self, ShaderError> {
         let Entry { file, mut module, mut info, structs } = Entry::of(sources, pass, definitions)?;
         let spirv_error = |message: String| ShaderError::Spirv { file: file.clone(), message };
-        if parameters == Parameters::Storage {
+        if buffers == ParameterBuffers::Storage {
             move_uniforms_to_storage(&mut module);
             info = validate(&module).map_err(spirv_error)?;
         }

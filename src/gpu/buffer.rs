@@ -60,7 +60,7 @@ impl BufferInner {
         use vk::BufferUsageFlags as Usage;
         let limits = &context.info.limits;
         let (usage, location, limit) = match kind {
-            // Parameters may be read as either kind: see `Gpu::parameters`.
+            // Parameters may be read as either kind: see `Gpu::parameter_buffers`.
             BufferKind::Uniform => {
                 (Usage::UNIFORM_BUFFER | Usage::STORAGE_BUFFER, MemoryLocation::CpuToGpu, limits.uniform_bytes)
             }

@@ -35,7 +35,7 @@ mod validation;
 use std::sync::Arc;
 
 use bytemuck::{AnyBitPattern, NoUninit};
-use welkin_shaders::{Parameters, Shader};
+use welkin_shaders::{ParameterBuffers, Shader};
 
 pub use buffer::{BufferKind, GpuBuffer};
 pub use census::Population;
@@ -98,10 +98,10 @@ impl Gpu {
     /// lavapipe writes what lies in uniform buffers into the code where branches and loops depend on it, so that a dispatch
     /// with new parameters is compiled anew, and Mesa 22 never gives the code of earlier ones back: half a megabyte each
     /// time. Storage buffers it leaves alone, and dispatches take no longer with them.
-    pub fn parameters(&self) -> Parameters {
+    pub fn parameter_buffers(&self) -> ParameterBuffers {
         match self.info().kind {
-            DeviceKind::Cpu => Parameters::Storage,
-            _ => Parameters::Uniform,
+            DeviceKind::Cpu => ParameterBuffers::Storage,
+            _ => ParameterBuffers::Uniform,
         }
     }
 

@@ -51,7 +51,7 @@ use crate::foreground::ForegroundError;
 use crate::gpu::{GpuError, ImageFormat};
 use crate::plan::{Declaration, Facts, PlanError, TableFormat};
 use welkin_shaders::ShaderError;
-pub use welkin_shaders::Sources as ShaderSources;
+pub use welkin_shaders::{ParameterBuffers, Sources as ShaderSources};
 
 /// A pass: what the plan asks it, and how it is recorded.
 pub struct Pass {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use welkin_shaders::{Definitions, Shader};
+use welkin_shaders::{Definitions, ParameterBuffers, Shader};
 
 use super::{RenderError, ShaderSources};
 use crate::gpu::{
@@ -23,6 +23,8 @@ pub struct Resources {
     parked: Vec<Parked>,
     group: usize,
     pipelines: HashMap<(&'static str, Definitions), Pipeline>,
+    /// Where shaders that are not compiled yet will find their parameters.
+    pub parameter_buffers: ParameterBuffers,
     /// The widest format of tables that the device can interpolate.
     pub widest_tables: TableFormat,
     /// How long submissions may be, where others use the device as well.
@@ -72,6 +74,7 @@ impl Resources {
         }
         let sampler = gpu.sampler(Filter::Linear, [AddressMode::Clamp; 3])?;
         Ok(Self {
+            parameter_buffers: gpu.parameter_buffers(),
             gpu,
             shaders,
             sampler,
@@ -178,7 +181,7 @@ impl Resources {
             let relevant = (*pass, shaders.relevant(pass, definitions)?);
             let pipeline = match pipelines.get(&relevant) {
                 Some(pipeline) => pipeline.clone(),
-                None => compile(&self.gpu, &shaders, pass, &relevant.1)?,
+                None => compile(&self.gpu, &shaders, pass, &relevant.1, self.parameter_buffers)?,
             };
             pipelines.insert(relevant, pipeline.clone());
             pipelines.insert((*pass, definitions.clone()), pipeline);
@@ -197,7 +200,7 @@ impl Resources {
         let relevant = (pass, self.shaders.relevant(pass, &key.1)?);
         let pipeline = match self.pipelines.get(&relevant) {
             Some(pipeline) => pipeline.clone(),
-            None => compile(&self.gpu, &self.shaders, pass, &relevant.1)?,
+            None => compile(&self.gpu, &self.shaders, pass, &relevant.1, self.parameter_buffers)?,
         };
         self.pipelines.insert(relevant, pipeline.clone());
         self.pipelines.insert(key, pipeline.clone());
@@ -205,8 +208,14 @@ impl Resources {
     }
 }
 
-fn compile(gpu: &Gpu, shaders: &ShaderSources, pass: &str, definitions: &Definitions) -> Result<Pipeline, RenderError> {
-    Ok(gpu.pipeline(&Shader::with_parameters(shaders, pass, definitions, gpu.parameters())?)?)
+fn compile(
+    gpu: &Gpu,
+    shaders: &ShaderSources,
+    pass: &str,
+    definitions: &Definitions,
+    buffers: ParameterBuffers,
+) -> Result<Pipeline, RenderError> {
+    Ok(gpu.pipeline(&Shader::with_parameters(shaders, pass, definitions, buffers)?)?)
 }
 
 #[cfg(test)]
