@@ -206,7 +206,6 @@ fn fifty_frames_of_changing_scene_and_size_leave_nothing_behind() {
     assert!(grown < 5 * 1024, "{grown} KiB");
     // Control: the driver of which this was learnt keeps what it compiles for uniform buffers.
     let (grown, _) = growth_kib(Some(ParameterBuffers::Uniform));
-    println!("uniform buffers: {grown} KiB");
     assert!(!is_mesa_22 || grown > 10 * 1024, "uniform buffers: {grown} KiB");
 }
 

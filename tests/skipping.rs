@@ -184,7 +184,7 @@ fn what_is_out_of_the_picture_does_not_show_in_it() {
         let (worst, changed) = difference_in_views(&mut renderers, effect, Skipping::USUAL, views);
         assert!(worst < 0.005 && changed >= at_least, "{effect:?}: {worst} in {changed} of {views} views");
         for rules in wrong {
-            let (worst, _) = difference_in_views(&mut renderers, effect, rules, 24);
+            let (worst, _) = difference_in_views(&mut renderers, effect, rules, views);
             assert!(worst > 0.005, "{effect:?}: {rules:?} goes unnoticed: {worst}");
         }
     }
