@@ -159,8 +159,35 @@ fn what_depends_on_nothing_that_changed_is_reused_and_gives_the_same_picture() {
     assert_ne!(rendered[0].frame, rendered[3].frame);
 }
 
+/// The largest relative difference of a pixel.
+fn difference(exact: &Rendered, other: &Rendered) -> f64 {
+    let pixels = exact.frame.radiance.as_flattened().iter().zip(other.frame.radiance.as_flattened());
+    pixels.map(|(exact, other)| f64::from((exact - other).abs()) / (f64::from(*exact) + 1e-11)).fold(0.0, f64::max)
+}
+
+/// A sun that sinks by 0.01° a frame from an elevation: the largest error of a pixel in any frame, and how often each pass
+/// ran and all were reused.
+fn sinking_sun(from_deg: f64, frames: u32, skipping: Skipping) -> (f64, usize, usize) {
+    let [mut exact, mut lagging] = [(); 2].map(|()| Renderer::new(&DeviceRequest::default()).unwrap());
+    let mut scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/hills.toml")).unwrap();
+    (scene.camera.width, scene.camera.height) = (24, 14);
+    let (mut worst, mut ran, mut together) = (0.0_f64, 0, 0);
+    for frame in 0..frames {
+        let Light::Directional(sun) = &mut scene.lights[0] else { panic!("the sun is directional") };
+        sun.direction.elevation_rad = (from_deg - 0.01 * f64::from(frame)).to_radians();
+        let settings = Settings { skipping, ..Settings::of(Quality::Low) };
+        let now = exact.render(&scene, Settings::of(Quality::Low), Outputs::default()).unwrap();
+        let late = lagging.render(&scene, settings, Outputs::default()).unwrap();
+        worst = worst.max(difference(&now, &late));
+        let tables = ["sky_view", "aerial_perspective"].map(|name| late.timings.plan.decision(name));
+        let running = tables.iter().filter(|decision| **decision == Some(Decision::Run)).count();
+        (ran, together) = (ran + running, together + usize::from(frame > 0 && running == 2));
+    }
+    (worst, ran, together)
+}
+
 #[test]
-fn a_hundred_frames_without_change_run_no_pass_and_a_moving_sun_runs_what_would_show() {
+fn a_hundred_frames_without_change_run_no_pass() {
     let _alone = common::alone();
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap();
     let mut scene = noon();
@@ -176,6 +203,25 @@ fn a_hundred_frames_without_change_run_no_pass_and_a_moving_sun_runs_what_would_
     sun.direction.elevation_rad += 1e-9;
     settings.skipping = Skipping::USUAL;
     assert_eq!(names(&renderer.render(&scene, settings, PICTURE).unwrap().timings.plan, Decision::Run)[0], "sky_view");
+}
+
+#[test]
+fn tables_lag_behind_a_moving_sun_by_what_does_not_show_and_come_in_different_frames() {
+    let _alone = common::alone();
+    let share = Skipping::IN_SEQUENCE.lag_share;
+    let (worst, ran, together) = sinking_sun(40.0, 60, Skipping::IN_SEQUENCE);
+    println!("from 40°: {worst}, {ran} tables, {together} frames with two");
+    assert!(worst < share && ran < 60 && together == 0, "{worst} {ran} {together}");
+    // Lower down there is more to do.
+    for from_deg in [20.3, 0.2] {
+        let (worst, ran, _) = sinking_sun(from_deg, 30, Skipping::IN_SEQUENCE);
+        println!("from {from_deg}°: {worst}, {ran} tables");
+        assert!(worst < share, "from {from_deg}°: {worst}, {ran} tables");
+    }
+    // Control: too much lag shows.
+    let careless = Skipping { lag_share: 200.0 * share, ..Skipping::IN_SEQUENCE };
+    let (worst, ..) = sinking_sun(12.0, 60, careless);
+    assert!(worst > share, "{worst}");
 }
 
 #[test]

@@ -9,7 +9,22 @@ use crate::scene::DirectionalLight;
 
 /// By how much light in a pixel is off, relatively, for each degree that tables lag: the largest over scenes, altitudes and
 /// views at an elevation in degrees, measured by `cargo run --release --example light_slopes`.
-const ERRORS_PER_DEG: [(f64, f64); 2] = [(0.0, 5.14), (1.0, 4.39)];
+const ERRORS_PER_DEG: [(f64, f64); 14] = [
+    (0.0, 5.14),
+    (1.0, 4.39),
+    (2.0, 6.87),
+    (3.0, 3.47),
+    (5.0, 0.917),
+    (7.0, 1.12),
+    (10.0, 0.764),
+    (15.0, 0.324),
+    (20.0, 0.109),
+    (30.0, 0.0296),
+    (45.0, 0.0224),
+    (60.0, 0.0409),
+    (75.0, 0.0663),
+    (89.0, 0.0148),
+];
 
 /// How much steeper it may be between the elevations, in other scenes and from other places.
 const SAFETY: f64 = 2.0;

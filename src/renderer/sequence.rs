@@ -54,7 +54,8 @@ impl Renderer {
         render: impl FnOnce(&mut Self) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
         // What was out of view has left nothing that could be followed.
-        let out_of_view = Facts::new(scene, settings, Orders::All, Outputs::default())?.in_picture().out_of_view.which();
+        let out_of_view =
+            Facts::new(scene, settings, Orders::All, Outputs::default())?.in_picture().out_of_view.which();
         let is_same = |before: &Before| before.clouds == settings.clouds && before.out_of_view == out_of_view;
         let sequence = match self.before.take() {
             Some(before) if is_same(&before) && follows(&before.scene, scene) => Sequence {
