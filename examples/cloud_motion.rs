@@ -11,7 +11,8 @@
 //! - *lag*: frames by which the sequence is late: minus the regression of the difference on the truth's change in a frame.
 //! - *flicker*: root mean square of what changes from frame to frame and does not in the truth, over the mean; beside it
 //!   what changes in the truth.
-//! - *ghosts*: mean opacity left in pixels that have become clear within eight frames.
+//! - *ghosts*: mean opacity left in pixels that have become clear within eight frames, with all pixels around, so that it is not
+//!   the noise of edges.
 //! - *cut*: largest difference right after the cut.
 
 use clap::Parser;
@@ -76,6 +77,7 @@ impl Seen {
 
 /// The frames of one setting: in sequence, and each by itself.
 struct Run {
+    width: usize,
     followed: Vec<Seen>,
     alone: Vec<Seen>,
 }
@@ -94,7 +96,7 @@ impl Run {
             followed.push(Seen::new(&a, &clear));
             alone.push(Seen::new(&b, &clear));
         }
-        Self { followed, alone }
+        Self { width: scenes[0].camera.width as usize, followed, alone }
     }
 
     /// Sums over the cloudy pixels of all frames from the third on but the last, of what `term` makes of (found, truth,
@@ -127,13 +129,21 @@ impl Run {
         for t in 8..self.alone.len() - 1 {
             for i in 0..self.alone[t].opacity.len() {
                 let was_cloudy = (t - 8..t).any(|before| self.alone[before].opacity[i] > 0.5);
-                if was_cloudy && self.alone[t].opacity[i] < 0.01 {
+                if was_cloudy && self.is_clear_around(t, i) {
                     sum += self.followed[t].opacity[i];
                     count += 1;
                 }
             }
         }
         (sum / count.max(1) as f64, count)
+    }
+
+    /// Whether a pixel and its eight neighbours see no cloud; at the picture's edge they are not all known.
+    fn is_clear_around(&self, t: usize, pixel: usize) -> bool {
+        let (width, opacity) = (self.width, &self.alone[t].opacity);
+        let (x, y) = (pixel % width, pixel / width);
+        let inside = x > 0 && x + 1 < width && y > 0 && (y + 2) * width <= opacity.len();
+        inside && (0..9).all(|k| opacity[(y + k / 3 - 1) * width + x + k % 3 - 1] < 0.01)
     }
 
     fn cut(&self) -> f64 {
