@@ -46,7 +46,7 @@ const EFFECTS: [(&str, &[&str]); 6] = [
     ("airglow", &["emission_order", "view_emission"]),
     ("mountains", &["terrain", "aerial_optical_depth", "aerial_perspective"]),
     ("clouds", &["cloud", "ordinates"]),
-    ("picture", &["compose", "display"]),
+    ("picture", &["sky_lattice", "interpolate", "compose", "display"]),
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {

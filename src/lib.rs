@@ -1,6 +1,7 @@
 //! Skies, clouds and fog in real time on Vulkan, with a stated error.
 
 pub mod bake;
+pub mod bench;
 pub mod foreground;
 pub mod frame;
 pub mod gpu;

@@ -132,6 +132,12 @@ impl Renderer {
         self.resources.pace = pace;
     }
 
+    /// Takes the times of passes with another clock than the device's best. With those of the host every dispatch waits for
+    /// the one before.
+    pub fn set_clock(&mut self, clock: Clock) {
+        self.resources.clock = Some(clock);
+    }
+
     /// Takes shaders from a folder, as somebody edits them, in place of those that the program was built with; the next
     /// frame computes everything anew.
     ///
@@ -183,9 +189,23 @@ impl Renderer {
         self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?.in_picture().with_surface(surface))
     }
 
+    /// Renders what the scene's camera sees, and leaves it on the device: as [`Renderer::render`] without its copies. What
+    /// nothing has changed is not computed again, the picture included.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn compute(&mut self, scene: &Scene, settings: Settings, outputs: Outputs) -> Result<Timings, RenderError> {
+        if scene.spectrum.group_count() > 1 {
+            return self.execute_groups(scene, settings, outputs);
+        }
+        let facts = Facts::new(scene, settings, Orders::All, outputs)?.in_picture();
+        let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
+        self.execute("frame", &facts, &passes)
+    }
+
     fn render_frame(&mut self, facts: &Facts) -> Result<Rendered, RenderError> {
         let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
-        let timings = self.execute("frame", facts, &passes, |_| Ok(()))?;
+        let timings = self.execute("frame", facts, &passes)?;
         let images = ["radiance_image", "transmittance_image"];
         let (frame, picture) = self.read_images(&facts.scene.camera, facts.outputs, images)?;
         Ok(Rendered { frame: spectral::in_channels(frame, facts.scene), picture, timings })
@@ -218,7 +238,7 @@ impl Renderer {
             let group_rays: Vec<_> = group.iter().map(|&index| rays[index]).collect();
             passes::upload_rays(&mut self.resources, &group_rays, &facts.sky_view_mapping())?;
             let passes: Vec<_> = TABLES.iter().collect();
-            self.execute("probe", &facts, &passes, |recording| record_probe(recording, group.len()))?;
+            self.execute_and("probe", &facts, &passes, |recording| record_probe(recording, group.len()))?;
             for (index, answer) in group.into_iter().zip(passes::download_answers(&self.resources)?) {
                 answers[index] = answer;
             }
@@ -226,22 +246,56 @@ impl Renderer {
         Ok(answers)
     }
 
-    /// Plans and runs passes, and then what is no part of a plan.
-    fn execute(
+    /// Plans and runs passes. Where every result still holds, nothing is submitted.
+    fn execute(&mut self, label: &str, facts: &Facts, passes: &[&Pass]) -> Result<Timings, RenderError> {
+        let facts = &self.adapted(facts);
+        let plan = self.prepare(facts, passes);
+        let runs = plan.passes.iter().any(|pass| pass.decision == Decision::Run);
+        if !runs && self.resources.targets.is_empty() {
+            self.history.record(&plan);
+            return Ok(Timings::unmeasured(plan));
+        }
+        self.run(label, facts, passes, plan, |_| Ok(()))
+    }
+
+    /// The same, and then what is no part of a plan.
+    fn execute_and(
         &mut self,
         label: &str,
         facts: &Facts,
         passes: &[&Pass],
         and_then: impl FnOnce(&mut Recording) -> Result<(), RenderError>,
     ) -> Result<Timings, RenderError> {
+        let facts = &self.adapted(facts);
+        let plan = self.prepare(facts, passes);
+        self.run(label, facts, passes, plan, and_then)
+    }
+
+    /// The facts on this device, in this place of a sequence of frames.
+    fn adapted<'a>(&mut self, facts: &Facts<'a>) -> Facts<'a> {
         if self.sequence.is_none() {
             self.before = None;
         }
-        let facts = &facts.clone().with_tables_up_to(self.resources.widest_tables).in_sequence(self.sequence);
+        facts.clone().with_tables_up_to(self.resources.widest_tables).in_sequence(self.sequence)
+    }
+
+    /// Plans, and makes room for what will run.
+    fn prepare(&mut self, facts: &Facts, passes: &[&Pass]) -> Plan {
         let declarations: Vec<_> = passes.iter().map(|pass| pass.declaration).collect();
         let plan = Plan::new(facts, &self.history, &declarations);
         self.release_what_nobody_writes(&plan, passes);
         self.history.begin(&plan);
+        plan
+    }
+
+    fn run(
+        &mut self,
+        label: &str,
+        facts: &Facts,
+        passes: &[&Pass],
+        plan: Plan,
+        and_then: impl FnOnce(&mut Recording) -> Result<(), RenderError>,
+    ) -> Result<Timings, RenderError> {
         let mut recording = Recording::new(label, facts, &mut self.resources)?;
         for pass in passes.iter().filter(|pass| plan.decision(pass.declaration.name) == Some(Decision::Run)) {
             (pass.record)(&mut recording)?;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The modules of `src/`, lowest first, and the other modules that each may use.
-const MAY_USE: [(&str, &[&str]); 14] = [
+const MAY_USE: [(&str, &[&str]); 15] = [
     ("scene", &[]),
     ("foreground", &["scene"]),
     ("frame", &[]),
@@ -21,6 +21,7 @@ const MAY_USE: [(&str, &[&str]); 14] = [
     ("shader_export", &["passes", "plan"]),
     ("renderer", &["foreground", "frame", "gpu", "passes", "plan", "probe", "scene"]),
     ("window", &["frame", "gpu", "output", "passes", "plan", "reference", "renderer", "scene"]),
+    ("bench", &["gpu", "passes", "plan", "probe", "reference", "renderer", "scene"]),
     ("bake", &["passes", "plan", "probe", "renderer", "scene", "shader_export"]),
 ];
 

@@ -295,7 +295,7 @@ fn time_is_attributed_to_the_dispatch_that_took_it() {
             assert!(completed.times.iter().enumerate().all(|(index, time)| time.label == index.to_string()));
             completed.times.iter().map(|time| time.milliseconds).collect::<Vec<_>>()
         };
-        for clock in [Clock::Host, Clock::of(gpu.info())] {
+        for clock in [Clock::Host, Clock::Processor, Clock::of(gpu.info())] {
             // The least of some tries leaves out what other processes cost.
             let tries: Vec<_> = (0..4).map(|_| times(clock)).collect();
             let least = |index: usize| tries.iter().map(|times| times[index]).fold(f64::INFINITY, f64::min);
@@ -303,6 +303,36 @@ fn time_is_attributed_to_the_dispatch_that_took_it() {
             // The work differs a thousandfold; what a dispatch costs by itself is the rest.
             assert!(heavy > 3.0 * light && heavy > 0.0, "{clock:?}: light {light} ms, heavy {heavy} ms");
         }
+    });
+}
+
+#[test]
+fn the_device_counts_the_workgroups_of_a_later_dispatch() {
+    const COUNT: &str = "
+        @group(0) @binding(0) var<storage, read_write> counts: array<atomic<u32>>;
+        @compute @workgroup_size(32) fn main(@builtin(local_invocation_index) i: u32) {
+            if i % 4u == 1u { atomicAdd(&counts[0], 1u); }
+            atomicMax(&counts[1], 1u);
+            atomicMax(&counts[2], 1u);
+        }";
+    const MARK: &str = "
+        @group(0) @binding(0) var<storage, read_write> marks: array<u32>;
+        @compute @workgroup_size(1) fn main(@builtin(workgroup_id) group: vec3<u32>) { marks[group.x] = 7u; }";
+    with_gpu(|gpu| {
+        let (count, mark) = (pipeline(gpu, "count", COUNT), pipeline(gpu, "mark", MARK));
+        let counts = gpu.storage_buffer("counts", 16).unwrap();
+        let marks = gpu.storage_buffer_of("marks", &[1_u32; 32]).unwrap();
+        // Twice: the second time counts from zero again.
+        for _ in 0..2 {
+            let mut commands = gpu.record("counted").unwrap();
+            commands.clear(&counts);
+            commands.dispatch(&count, &[("counts", Resource::Buffer(&counts))], Work::Workgroups([1, 1, 1])).unwrap();
+            commands.dispatch(&mark, &[("marks", Resource::Buffer(&marks))], Work::Counted(&counts)).unwrap();
+            commands.submit_and_wait().unwrap();
+        }
+        let marked: Vec<u32> = gpu.read_buffer(&marks).unwrap();
+        assert_eq!(marked.iter().filter(|&&mark| mark == 7).count(), 8);
+        assert!(marked[..8].iter().all(|&mark| mark == 7) && marked[8..].iter().all(|&mark| mark == 1));
     });
 }
 

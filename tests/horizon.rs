@@ -72,6 +72,49 @@ fn no_line_runs_along_the_horizon() {
     });
 }
 
+/// A picture across the horizon and up to 14 degrees above it, with so much left to interpolation.
+fn picture(renderer: &mut Renderer, sun_deg: f64, altitude_m: f64, lattice_tolerance: f64) -> Vec<[f32; 3]> {
+    let mut scene = scene(sun_deg, altitude_m);
+    let horizon_rad = SkyViewMapping::new(&scene.planet, altitude_m, 2).horizon_rad;
+    let camera = &mut scene.camera;
+    camera.direction.elevation_rad = 0.5 * PI - horizon_rad + 4_f64.to_radians();
+    camera.vertical_field_of_view_rad = 20_f64.to_radians();
+    (camera.width, camera.height) = (120, 120);
+    let settings = Settings { lattice_tolerance, ..Settings::of(Quality::Low) };
+    renderer.render(&scene, settings, Outputs::default()).unwrap().frame.radiance
+}
+
+/// The largest relative difference of pixels, and the share of them that differ at all.
+fn differences(found: &[[f32; 3]], exact: &[[f32; 3]]) -> (f64, f64) {
+    let relative = |(a, b): (&f32, &f32)| if a == b { 0.0 } else { f64::from((a / b - 1.0).abs()) };
+    let pixels = found.iter().zip(exact);
+    let errors: Vec<f64> = pixels.map(|(a, b)| a.iter().zip(b).map(relative).fold(0.0, f64::max)).collect();
+    let differing = errors.iter().filter(|&&error| error > 0.0).count();
+    (errors.iter().copied().fold(0.0, f64::max), differing as f64 / errors.len() as f64)
+}
+
+#[test]
+fn what_is_interpolated_between_pixels_is_what_each_of_them_would_be() {
+    let tolerance = Settings::of(Quality::Low).lattice_tolerance;
+    with_renderer(|renderer| {
+        let mut worst_control = 0.0_f64;
+        for altitude_m in ALTITUDES_M {
+            for sun_deg in SUNS_DEG {
+                let exact = picture(renderer, sun_deg, altitude_m, 0.0);
+                let (worst, share) = differences(&picture(renderer, sun_deg, altitude_m, tolerance), &exact);
+                println!("{altitude_m} m, sun {sun_deg} deg: {worst:.5}, {share:.2} of the pixels are interpolated");
+                // Second differences promise the tolerance for a parabola; the tables' own kinks may fall between nodes.
+                assert!(worst < 2.0 * tolerance, "{altitude_m} m, sun {sun_deg} deg: {worst}");
+                assert!(share > 0.3, "{altitude_m} m, sun {sun_deg} deg: {share}");
+                let (loose, _) = differences(&picture(renderer, sun_deg, altitude_m, 0.2), &exact);
+                worst_control = worst_control.max(loose);
+            }
+        }
+        // Negative control: cells that are trusted too far show.
+        assert!(worst_control > 2.0 * tolerance, "{worst_control}");
+    });
+}
+
 /// Probes a scene under a sun from an altitude in directions (zenith angle, azimuth from the sun), rad.
 fn probe(renderer: &mut Renderer, altitude_m: f64, sun_rad: f64, views: &[[f64; 2]]) -> Vec<RayRadiance> {
     let ray = |&[view_zenith_rad, view_azimuth_rad]: &[f64; 2]| Ray {

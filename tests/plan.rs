@@ -22,9 +22,9 @@ fn plan(scene: &Scene) -> Plan {
     Renderer::plan(scene, Settings::of(Quality::Low), PICTURE).unwrap()
 }
 
-/// The passes of air that gives off light of its own, of what stands before the camera, of local media, and of more
-/// wavelengths than three.
-const OF_OTHER_SCENES: [&str; 9] = [
+/// The passes of air that gives off light of its own, of what stands before the camera, of local media, of pictures large
+/// enough to be interpolated, and of more wavelengths than three.
+const OF_OTHER_SCENES: [&str; 11] = [
     "emission_order",
     "view_emission",
     "aerial_optical_depth",
@@ -33,6 +33,8 @@ const OF_OTHER_SCENES: [&str; 9] = [
     "local_clusters",
     "terrain",
     "local_media",
+    "sky_lattice",
+    "interpolate",
     "colour",
 ];
 

@@ -19,10 +19,15 @@ struct Camera {
 
 @group(0) @binding(13) var<uniform> camera: Camera;
 
+// Unit vector through a place in the picture, in pixels from its top left corner.
+fn view_through(place: vec2<f32>) -> vec3<f32> {
+    let x = (2.0 * place / camera.size - 1.0) * vec2<f32>(camera.half_width, -camera.half_height);
+    return normalize(camera.forward + x.x * camera.right + x.y * camera.up);
+}
+
 // Unit vector through the centre of a pixel; pixel (0, 0) is at the top left.
 fn view_direction(pixel: vec2<u32>) -> vec3<f32> {
-    let x = (2.0 * (vec2<f32>(pixel) + 0.5) / camera.size - 1.0) * vec2<f32>(camera.half_width, -camera.half_height);
-    return normalize(camera.forward + x.x * camera.right + x.y * camera.up);
+    return view_through(vec2<f32>(pixel) + 0.5);
 }
 
 // Angle between neighbouring pixels around a direction, rad: the mean of those along and across the picture's radius.

@@ -16,7 +16,7 @@
 //       leg_finish(&leg, ray, &optical_depth);
 //   }
 //
-// Definitions: NODE_COUNT, Gauss-Legendre nodes per leg; LAYERS (some constituent's density is a layer).
+// Definitions: NODE_COUNT, nodes per leg, and FINE_PANELS, enough for a profile's kinks; LAYERS (some constituent's density is a layer).
 
 #import welkin::atmosphere::{atmosphere, extinction_at, layer_bounds_m, LAYER_COUNT}
 #import welkin::geometry
@@ -290,8 +290,8 @@ fn ground_mu_s(ray: AirRay) -> f32 {
     return clamp((r_start * ray.mu_s + ray.length_m * ray.nu) / atmosphere.radius_m, -1.0, 1.0);
 }
 
-// Panels of Simpson's rule on each leg where only optical depth is asked for: enough for a profile's kinks.
-const FINE_PANELS: u32 = 64u;
+// Panels of Simpson's rule on each leg where only optical depth is asked for.
+const FINE_PANELS: u32 = #{FINE_PANELS}u;
 
 // Optical depth along the whole ray.
 fn optical_depth_along(ray: AirRay) -> vec3<f32> {

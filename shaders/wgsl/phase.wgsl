@@ -17,5 +17,8 @@ struct PhaseLobe {
 // One lobe's part of a phase function, 1/sr; nu = 1 is forward.
 fn lobe_per_sr(lobe: PhaseLobe, nu: f32) -> f32 {
     let base = lobe.gap + lobe.slope * (1.0 - nu);
-    return lobe.scale_per_sr * (1.0 + lobe.quadratic * nu * nu) * exp2(-lobe.exponent * log2(base));
+    // The exponents are 0, 3/2 and 2: products of a root, which is nearer and cheaper than a power.
+    let root = inverseSqrt(base);
+    let power = select(root * root * root, root * root * root * root, lobe.exponent > 1.75);
+    return lobe.scale_per_sr * (1.0 + lobe.quadratic * nu * nu) * select(power, 1.0, lobe.exponent < 0.75);
 }

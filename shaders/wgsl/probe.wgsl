@@ -60,7 +60,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         var seen = air_radiance(light, direction);
 #endif
         if sees_ground {
-            seen += transmittance * ground_radiance(light, direction);
+            let ground = ground_radiance(light, direction);
+            seen += transmittance * (ground.straight + ground.diffuse);
         }
         radiance += observer.lights[light].irradiance * seen;
     }

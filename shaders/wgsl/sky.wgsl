@@ -94,48 +94,56 @@ struct Shares {
 
 const ALL: Shares = Shares(vec3<f32>(1.0), vec3<f32>(1.0));
 
-// Radiance of the air along the ray, 1/sr: per unit irradiance of the light.
-fn air_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
-    return air_radiance_of(light, direction, ALL);
+// Light that the air along the ray has scattered once, by one scatterer, without its phase function: over unit irradiance
+// of the light.
+fn single_scattering(light: u32, scatterer: u32, direction: SkyDirection) -> vec3<f32> {
+#ifdef LIT
+    return length_m(direction) * sky_view(light, SINGLE_LAYER + scatterer, direction);
+#else
+    return vec3<f32>(0.0);
+#endif
 }
 
-// The same of shares of its light.
-fn air_radiance_of(light: u32, direction: SkyDirection, shares: Shares) -> vec3<f32> {
-    var radiance = vec3<f32>(0.0);
-#ifdef LIT
-    for (var c = 0u; c < SCATTERER_COUNT; c++) {
-        radiance += phase_per_sr(c, direction.nu) * sky_view(light, SINGLE_LAYER + c, direction);
-    }
-    radiance *= shares.straight;
+// Radiance that the air along the ray has scattered more than once, 1/sr: per unit irradiance of the light.
+fn multiple_scattering(light: u32, direction: SkyDirection) -> vec3<f32> {
 #ifdef MULTIPLE_SCATTERING
-    radiance += shares.diffuse * sky_view(light, MULTIPLE_LAYER, direction);
+    return length_m(direction) * sky_view(light, MULTIPLE_LAYER, direction);
+#else
+    return vec3<f32>(0.0);
 #endif
-    radiance *= length_m(direction);
-#endif
+}
+
+// Radiance of the air along the ray, 1/sr: per unit irradiance of the light.
+fn air_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
+    var radiance = multiple_scattering(light, direction);
+    for (var c = 0u; c < SCATTERER_COUNT; c++) {
+        radiance += phase_per_sr(c, direction.nu) * single_scattering(light, c, direction);
+    }
     return radiance;
 }
 
-// Radiance that leaves the ground where a view ray meets it, 1/sr: per unit irradiance of the light.
-fn ground_radiance(light: u32, direction: SkyDirection) -> vec3<f32> {
-    return ground_radiance_of(light, direction, ALL);
+// Radiance that leaves the ground where a view ray meets it, 1/sr, per unit irradiance of the light: of light that
+// reached the ground straight, and of light that air or clouds had scattered before.
+struct GroundRadiance {
+    straight: vec3<f32>,
+    diffuse: vec3<f32>,
 }
 
-// The same of shares of the light on the ground.
-fn ground_radiance_of(light: u32, direction: SkyDirection, shares: Shares) -> vec3<f32> {
-    var radiance = vec3<f32>(0.0);
+fn ground_radiance(light: u32, direction: SkyDirection) -> GroundRadiance {
+    var ground: GroundRadiance;
 #ifdef GROUND
     let mu = cos(direction.zenith_rad);
     let mu_s = ground_mu_s(view_ray(observer.altitude_m, mu, light_mu_s(light), direction.nu, true));
-    var irradiance = shares.straight * direct_irradiance_of_disc(light, mu_s);
+    let reflected_per_sr = atmosphere.ground_albedo / PI;
+    ground.straight = reflected_per_sr * direct_irradiance_of_disc(light, mu_s);
 #ifdef MULTIPLE_SCATTERING
     for (var beam = 0u; beam < beam_count(light); beam++) {
-        let diffuse = diffuse_ground_irradiance(multiple_scattering_table, beam_mu_s(light, beam, mu_s));
-        irradiance += shares.diffuse * beam_weight(light, beam) * diffuse;
+        let irradiance = diffuse_ground_irradiance(multiple_scattering_table, beam_mu_s(light, beam, mu_s));
+        ground.diffuse += reflected_per_sr * beam_weight(light, beam) * irradiance;
     }
 #endif
-    radiance = atmosphere.ground_albedo / PI * irradiance;
 #endif
-    return radiance;
+    return ground;
 }
 
 // Radiance that no directional light causes: the air's own, on its way to the observer and from the ground, W/m2/sr/nm.

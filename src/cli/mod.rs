@@ -3,6 +3,7 @@
 mod accuracy;
 mod backend;
 mod bake;
+mod bench;
 mod compare;
 mod explain;
 mod failure;
@@ -46,6 +47,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Bake(bake::Arguments),
+    Bench(bench::Arguments),
     Compare(compare::Arguments),
     Explain(explain::Arguments),
     Merge(merge::Arguments),
@@ -65,6 +67,7 @@ pub fn run() -> ExitCode {
     log::show();
     let outcome = match Cli::parse().command {
         Command::Bake(arguments) => bake::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Probe(arguments) => probe::run(&arguments),

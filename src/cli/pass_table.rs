@@ -17,7 +17,7 @@ pub struct Statistics {
     device: Option<String>,
     /// Its driver with version.
     driver: Option<String>,
-    /// What times were taken with: "timestamps" of the device or the "host" clock around each dispatch.
+    /// What times were taken with: "timestamps" of the device, the "host" clock or the "processor" time around each dispatch.
     clock: Option<&'static str>,
     passes: Vec<PassStatistics>,
 }
@@ -63,6 +63,7 @@ impl Statistics {
             clock: timings.clock.map(|clock| match clock {
                 Clock::Timestamps => "timestamps",
                 Clock::Host => "host",
+                Clock::Processor => "processor",
             }),
             passes: passes.collect(),
         }

@@ -26,6 +26,17 @@ impl Use {
         Self { stage: Stage::COPY, reads: Access::NONE, writes: Access::TRANSFER_WRITE, layout }
     }
 
+    /// Numbers of workgroups, for a dispatch.
+    pub(crate) const fn counts() -> Self {
+        let (stage, reads) = (Stage::DRAW_INDIRECT, Access::INDIRECT_COMMAND_READ);
+        Self { stage, reads, writes: Access::NONE, layout: Layout::UNDEFINED }
+    }
+
+    pub(crate) const fn clear() -> Self {
+        let (stage, writes) = (Stage::ALL_TRANSFER, Access::TRANSFER_WRITE);
+        Self { stage, reads: Access::NONE, writes, layout: Layout::UNDEFINED }
+    }
+
     /// Whatever comes next and does not write: another submission, of the host's own.
     pub(crate) const fn read_by_others(layout: Layout) -> Self {
         Self { stage: Stage::ALL_COMMANDS, reads: Access::MEMORY_READ, writes: Access::NONE, layout }

@@ -65,7 +65,7 @@ impl BufferInner {
                 (Usage::UNIFORM_BUFFER | Usage::STORAGE_BUFFER, MemoryLocation::CpuToGpu, limits.uniform_bytes)
             }
             BufferKind::Storage => (
-                Usage::STORAGE_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST,
+                Usage::STORAGE_BUFFER | Usage::INDIRECT_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST,
                 MemoryLocation::GpuOnly,
                 limits.storage_bytes,
             ),

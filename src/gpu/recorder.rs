@@ -20,13 +20,23 @@ use super::sampler::Sampler;
 use super::timer::{Clock, DispatchTime, Timer};
 
 /// How much a dispatch computes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Work {
+#[derive(Clone, Copy)]
+pub enum Work<'a> {
     /// Numbers of workgroups.
     Workgroups([u32; 3]),
     /// Numbers of invocations, such as an image's extent: as many workgroups as cover them, so that a pass must leave
     /// out the invocations beyond.
     Invocations([u32; 3]),
+    /// As many workgroups as the three numbers say that a storage buffer begins with: the device itself has counted. No
+    /// number may be beyond the device's limit.
+    Counted(&'a GpuBuffer),
+}
+
+/// Numbers of workgroups of a part of a dispatch.
+#[derive(Clone, Copy)]
+enum Portion {
+    From { base: [u32; 3], count: [u32; 3] },
+    Counted(vk::Buffer),
 }
 
 /// What came of a recording besides the content of its resources.
@@ -82,7 +92,7 @@ impl Commands {
             kept: Kept::default(),
             timer: match (clock, &pace) {
                 // Pieces are timed as wholes.
-                (None, _) | (Some(Clock::Host), Some(_)) => Timer::Off,
+                (None, _) | (Some(Clock::Host | Clock::Processor), Some(_)) => Timer::Off,
                 (Some(clock), _) => Timer::new(context, clock),
             },
             piece_times: Vec::new(),
@@ -120,20 +130,55 @@ impl Commands {
         work: Work,
     ) -> Result<(), GpuError> {
         let workgroups = self.workgroups(pipeline, work)?;
+        let counted = match work {
+            Work::Counted(counts) => Some(counts),
+            Work::Workgroups(_) | Work::Invocations(_) => None,
+        };
         let bound = resource::bind(pipeline.name(), pipeline.bindings(), resources)?;
         self.check_written(pipeline.name(), &bound)?;
         let first_data = self.kept.data.len();
         self.kept.data.extend(self.upload_data(&bound)?);
         let data = &self.kept.data[first_data..];
         let descriptors = Descriptors::new(&self.context, &pipeline.0, &bound, data)?;
-        self.barriers(&bound).record(&self.context.device, self.list.raw);
-        match self.pace.clone() {
-            None => self.record_portion(label, pipeline, descriptors.as_ref(), [0; 3], workgroups)?,
-            Some(pace) => self.record_in_pieces(&pace, label, pipeline, descriptors.as_ref(), workgroups)?,
+        let mut barriers = self.barriers(&bound);
+        if let Some(barrier) = counted.and_then(|counts| self.state(Resource::Buffer(counts))?.next(Use::counts())) {
+            barriers.buffer(barrier);
+        }
+        barriers.record(&self.context.device, self.list.raw);
+        match (self.pace.clone(), counted) {
+            (None, None) => {
+                let all = Portion::From { base: [0; 3], count: workgroups };
+                self.record_portion(label, pipeline, descriptors.as_ref(), all)?;
+            }
+            (None, Some(counts)) => {
+                self.record_portion(label, pipeline, descriptors.as_ref(), Portion::Counted(counts.0.raw))?;
+            }
+            (Some(pace), None) => self.record_in_pieces(&pace, label, pipeline, descriptors.as_ref(), workgroups)?,
+            (Some(pace), Some(counts)) => {
+                // Nobody here knows how many there are: it is one piece, whose time is learnt as that of one workgroup.
+                let portion = pace.portion(label, &self.piece, [1, 1], 1);
+                self.record_portion(label, pipeline, descriptors.as_ref(), Portion::Counted(counts.0.raw))?;
+                self.piece.add(label, 1, portion.milliseconds);
+                if portion.ends_piece {
+                    self.finish_piece(&pace)?;
+                    self.restart()?;
+                }
+            }
         }
         self.kept.descriptors.extend(descriptors);
         self.kept.pipelines.push(pipeline.clone());
         Ok(())
+    }
+
+    /// Fills a storage buffer with zeros.
+    pub fn clear(&mut self, buffer: &GpuBuffer) {
+        let mut barriers = Barriers::default();
+        if let Some(barrier) = self.state(Resource::Buffer(buffer)).and_then(|state| state.next(Use::clear())) {
+            barriers.buffer(barrier);
+        }
+        barriers.record(&self.context.device, self.list.raw);
+        // SAFETY: the list is being recorded; storage buffers are made to be copied to, and the recording keeps this one.
+        unsafe { self.context.device.cmd_fill_buffer(self.list.raw, buffer.0.raw, 0, vk::WHOLE_SIZE, 0) };
     }
 
     /// Puts an image that the recording has written into the layout for what others do with it next.
@@ -163,7 +208,7 @@ impl Commands {
             let portion = pace.portion(label, &self.piece, [workgroups[axis] - from, workgroups[axis]], row_workgroups);
             let (mut base, mut count) = ([0; 3], workgroups);
             (base[axis], count[axis]) = (from, portion.rows);
-            self.record_portion(label, pipeline, descriptors, base, count)?;
+            self.record_portion(label, pipeline, descriptors, Portion::From { base, count })?;
             self.piece.add(label, u64::from(portion.rows) * row_workgroups, portion.milliseconds);
             from += portion.rows;
             if portion.ends_piece {
@@ -194,12 +239,11 @@ impl Commands {
         label: &str,
         pipeline: &Pipeline,
         descriptors: Option<&Descriptors>,
-        base: [u32; 3],
-        workgroups: [u32; 3],
+        portion: Portion,
     ) -> Result<(), GpuError> {
         self.context.begin_label(self.list.raw, label);
         self.begin_time(label)?;
-        self.record(pipeline, descriptors, base, workgroups);
+        self.record(pipeline, descriptors, portion);
         if let Timer::Timestamps(timestamps) = &mut self.timer {
             timestamps.end(self.list.raw);
         }
@@ -224,6 +268,7 @@ impl Commands {
     fn workgroups(&self, pipeline: &Pipeline, work: Work) -> Result<[u32; 3], GpuError> {
         let workgroups = match work {
             Work::Workgroups(workgroups) => workgroups,
+            Work::Counted(_) => return Ok([1; 3]),
             Work::Invocations(invocations) => {
                 std::array::from_fn(|axis| invocations[axis].div_ceil(pipeline.0.workgroup_size[axis]))
             }
@@ -296,13 +341,7 @@ impl Commands {
         barriers
     }
 
-    fn record(
-        &self,
-        pipeline: &Pipeline,
-        descriptors: Option<&Descriptors>,
-        [base_x, base_y, base_z]: [u32; 3],
-        [x, y, z]: [u32; 3],
-    ) {
+    fn record(&self, pipeline: &Pipeline, descriptors: Option<&Descriptors>, portion: Portion) {
         let (device, commands) = (&self.context.device, self.list.raw);
         let bind_point = vk::PipelineBindPoint::COMPUTE;
         // SAFETY: the list is being recorded; pipeline, sets and resources are kept until it is done, and the sets
@@ -313,10 +352,13 @@ impl Commands {
                 let layout = pipeline.0.layout;
                 device.cmd_bind_descriptor_sets(commands, bind_point, layout, 0, &descriptors.sets, &[]);
             }
-            match [base_x, base_y, base_z] {
+            match portion {
                 // Validation layers of 2023 look at this one only.
-                [0, 0, 0] => device.cmd_dispatch(commands, x, y, z),
-                _ => device.cmd_dispatch_base(commands, base_x, base_y, base_z, x, y, z),
+                Portion::From { base: [0, 0, 0], count: [x, y, z] } => device.cmd_dispatch(commands, x, y, z),
+                Portion::From { base: [from_x, from_y, from_z], count: [x, y, z] } => {
+                    device.cmd_dispatch_base(commands, from_x, from_y, from_z, x, y, z);
+                }
+                Portion::Counted(counts) => device.cmd_dispatch_indirect(commands, counts, 0),
             }
         }
     }
@@ -325,18 +367,17 @@ impl Commands {
         match &mut self.timer {
             Timer::Off => {}
             Timer::Timestamps(timestamps) => timestamps.begin(self.list.raw, label)?,
-            Timer::Host { started, .. } => *started = Some(Instant::now()),
+            Timer::Alone(alone) => alone.begin(),
         }
         Ok(())
     }
 
-    /// With the host's clock, runs what was recorded so far, which is one dispatch.
+    /// With a clock of the host's, runs what was recorded so far, which is one dispatch.
     fn end_time(&mut self, label: &str) -> Result<(), GpuError> {
-        let Timer::Host { .. } = self.timer else { return Ok(()) };
+        let Timer::Alone(_) = self.timer else { return Ok(()) };
         self.flush()?;
-        if let Timer::Host { started: Some(started), times } = &mut self.timer {
-            let milliseconds = started.elapsed().as_secs_f64() * 1e3;
-            times.push(DispatchTime { label: label.to_owned(), milliseconds });
+        if let Timer::Alone(alone) = &mut self.timer {
+            alone.end(label);
         }
         self.restart()
     }

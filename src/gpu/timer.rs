@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use ash::vk;
+use cpu_time::ProcessTime;
 
 use super::census::{Counted, Kind};
 use super::context::Context;
@@ -20,6 +21,9 @@ pub enum Clock {
     Timestamps,
     /// The host's clock around a submission of each dispatch alone, waiting included.
     Host,
+    /// What the process's threads have worked during a submission of each dispatch alone: with a driver that computes on
+    /// the CPU the price of a dispatch, however busy others keep the machine.
+    Processor,
 }
 
 impl Clock {
@@ -35,7 +39,7 @@ impl Clock {
 pub struct DispatchTime {
     /// The dispatch's label.
     pub label: String,
-    /// Time on the device, ms.
+    /// Time on the device, or of all the processor's cores, ms.
     pub milliseconds: f64,
 }
 
@@ -43,14 +47,44 @@ pub struct DispatchTime {
 pub(crate) enum Timer {
     Off,
     Timestamps(Timestamps),
-    Host { started: Option<Instant>, times: Vec<DispatchTime> },
+    Alone(Alone),
+}
+
+/// Takes the times of dispatches that are run one by one.
+pub(crate) struct Alone {
+    clock: Clock,
+    started: Option<Stopwatch>,
+    times: Vec<DispatchTime>,
+}
+
+enum Stopwatch {
+    Wall(Instant),
+    Processor(ProcessTime),
+}
+
+impl Alone {
+    pub(crate) fn begin(&mut self) {
+        self.started = Some(match self.clock {
+            Clock::Processor => Stopwatch::Processor(ProcessTime::now()),
+            _ => Stopwatch::Wall(Instant::now()),
+        });
+    }
+
+    pub(crate) fn end(&mut self, label: &str) {
+        let took = match self.started.take() {
+            Some(Stopwatch::Wall(started)) => started.elapsed(),
+            Some(Stopwatch::Processor(started)) => started.elapsed(),
+            None => return,
+        };
+        self.times.push(DispatchTime { label: label.to_owned(), milliseconds: took.as_secs_f64() * 1e3 });
+    }
 }
 
 impl Timer {
     pub(crate) fn new(context: &Arc<Context>, clock: Clock) -> Self {
         match clock {
             Clock::Timestamps => Self::Timestamps(Timestamps::new(context)),
-            Clock::Host => Self::Host { started: None, times: Vec::new() },
+            Clock::Host | Clock::Processor => Self::Alone(Alone { clock, started: None, times: Vec::new() }),
         }
     }
 
@@ -59,7 +93,7 @@ impl Timer {
         match self {
             Self::Off => Ok(Vec::new()),
             Self::Timestamps(timestamps) => timestamps.times(),
-            Self::Host { times, .. } => Ok(times.clone()),
+            Self::Alone(alone) => Ok(alone.times.clone()),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Linear radiance of every pixel.
 
 use super::{Pass, Recording, RenderError};
-use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need, Surface};
+use crate::gpu::{GpuImage, ImageFormat, ImageShape, Work};
+use crate::plan::{Declaration, Facts, Fingerprint, Need, Surface, lattice_cell};
 
 const NAME: &str = "compose";
 
@@ -26,13 +26,10 @@ pub const PASS: Pass = Pass {
             "media_radiance_image",
             "media_transmittance_image",
             "terrain_image",
+            "exact_cells",
         ],
         writes: &["radiance_image", "transmittance_image", "distance_image"],
-        inputs: |facts| {
-            let scene = facts.scene;
-            let lights = (&facts.lights, &facts.faint_discs);
-            Fingerprint::of(&(&scene.camera, lights, &scene.planet, facts.outputs.capture, facts.surface))
-        },
+        inputs,
         bytes: |facts| {
             let pixels = shape(facts).texels();
             let capture = ImageFormat::Rgba32Float.texel_bytes() + ImageFormat::R32Float.texel_bytes();
@@ -42,16 +39,36 @@ pub const PASS: Pass = Pass {
     record,
 };
 
+/// What a pixel depends on besides what passes leave.
+pub(super) fn inputs(facts: &Facts) -> Fingerprint {
+    let scene = facts.scene;
+    let lights = (&facts.lights, &facts.faint_discs);
+    let request = (facts.outputs.capture, facts.surface, facts.settings.lattice_tolerance.to_bits());
+    Fingerprint::of(&(&scene.camera, lights, &scene.planet, request))
+}
+
 fn shape(facts: &Facts) -> ImageShape {
     ImageShape::D2(facts.scene.camera.width, facts.scene.camera.height)
 }
 
 fn need(facts: &Facts) -> Need {
     let camera = &facts.scene.camera;
-    Need::Needed(format!("{} x {} pixels", camera.width, camera.height))
+    let size = format!("{} x {} pixels", camera.width, camera.height);
+    Need::Needed(match lattice_cell(facts) {
+        Ok(_) => format!("those of {size} that cannot be interpolated"),
+        Err(_) => size,
+    })
 }
 
-fn record(recording: &mut Recording) -> Result<(), RenderError> {
+/// The images of a frame.
+pub(super) struct Images {
+    pub(super) shape: ImageShape,
+    /// What stands before the camera.
+    pub(super) surface: Option<GpuImage>,
+}
+
+/// Makes the images that pixels are written to.
+pub(super) fn images(recording: &mut Recording) -> Result<Images, RenderError> {
     let shape = shape(recording.facts);
     recording.resources.image("radiance_image", shape, ImageFormat::Rgba32Float)?;
     if recording.facts.outputs.capture {
@@ -63,6 +80,16 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
         Some(Surface::Given(_)) => recording.resources.existing_image("foreground_image").cloned(),
         Some(Surface::Rays) | None => None,
     };
-    let images: Vec<_> = surface.iter().map(|image| ("surface_image", image)).collect();
-    recording.dispatch(NAME, &[], &images, Work::Invocations(shape.extent()))
+    Ok(Images { shape, surface })
+}
+
+fn record(recording: &mut Recording) -> Result<(), RenderError> {
+    let images = images(recording)?;
+    let surface: Vec<_> = images.surface.iter().map(|image| ("surface_image", image)).collect();
+    let listed = lattice_cell(recording.facts).ok().and(recording.resources.existing_buffer("exact_cells").cloned());
+    let work = match &listed {
+        Some(cells) => Work::Counted(cells),
+        None => Work::Invocations(images.shape.extent()),
+    };
+    recording.dispatch(NAME, &[], &surface, work)
 }

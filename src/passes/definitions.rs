@@ -7,7 +7,7 @@ use super::blocks::{
     ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count, local_light_count, volume_term_count,
 };
 use super::{local_clusters, ordinates, volume_light};
-use crate::plan::{CloudScattering, Facts, Surface, TableFormat, Treatment};
+use crate::plan::{CloudScattering, Facts, Surface, TableFormat, Treatment, lattice_cell};
 use crate::probe::Orders;
 
 /// Invocations of a workgroup that every Vulkan device takes.
@@ -17,6 +17,8 @@ const MAX_INVOCATIONS: u32 = 128;
 pub fn definitions(facts: &Facts) -> Definitions {
     let (settings, groups, directions) = (&facts.settings, &facts.groups, &facts.settings.directions);
     let grid = &settings.source_grid;
+    let lattice_cell = lattice_cell(facts).ok();
+    let has_overlay = facts.has_overlay();
     let numbers = [
         ("CONSTITUENT_COUNT", groups.count),
         ("SCATTERING_EXPONENTIAL_END", groups.scattering_exponential_end),
@@ -33,6 +35,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("LIGHT_COUNT", facts.light_slots()),
         ("FAINT_COUNT", facts.faint_discs.len() as u32),
         ("NODE_COUNT", settings.nodes_per_leg),
+        ("FINE_PANELS", settings.optical_depth_panels),
         ("DEGREE_COUNT", facts.degree_count()),
         ("COEFFICIENT_COUNT", facts.coefficient_count()),
         ("BELOW_COUNT", directions.below),
@@ -50,6 +53,8 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("GRID_ALTITUDE_COUNT", settings.source_size[1]),
         ("GRID_INVOCATION_COUNT", grid.count().min(MAX_INVOCATIONS)),
         ("INVOCATION_COUNT", directions.count().min(MAX_INVOCATIONS)),
+        ("LATTICE_CELL", lattice_cell.unwrap_or(1)),
+        ("LATTICE_PPM", (1e6 * settings.lattice_tolerance) as u32),
     ];
     let clouds = &settings.clouds;
     let cloud_numbers = [
@@ -103,6 +108,9 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("CAPTURE", facts.outputs.capture),
         ("SURFACE", facts.surface.is_some()),
         ("SURFACE_HILLS", facts.surface == Some(Surface::Terrain)),
+        ("OVERLAY", has_overlay),
+        ("LATTICE", lattice_cell.is_some()),
+        ("LATTICE_TRANSMITTANCE", facts.outputs.capture || has_overlay),
         ("LAYERS", facts.groups.has_layers()),
         ("HALF_TABLES", settings.table_format == TableFormat::Float16),
     ];

@@ -26,7 +26,7 @@ pub(super) fn shape(facts: &Facts) -> ImageShape {
 }
 
 /// One workgroup per texel.
-pub(super) fn work(facts: &Facts) -> Work {
+pub(super) fn work(facts: &Facts) -> Work<'static> {
     let [width, height] = facts.settings.multiple_scattering_size;
     Work::Workgroups([width, height, 1])
 }
@@ -34,7 +34,7 @@ pub(super) fn work(facts: &Facts) -> Work {
 /// What all of the multiply scattered field depends on besides optical depth.
 pub(super) fn inputs(facts: &Facts) -> Fingerprint {
     let settings = &facts.settings;
-    let quadrature = (settings.nodes_per_leg, settings.directions);
+    let quadrature = (settings.nodes_per_leg, settings.quadrature, settings.directions);
     let sampling = (quadrature, facts.degree_count(), settings.multiple_scattering_size);
     Fingerprint::of(&(facts.scene.planet.ground_albedo, settings.orders, sampling))
 }

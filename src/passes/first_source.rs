@@ -26,7 +26,7 @@ pub(super) fn shape(facts: &Facts) -> ImageShape {
 }
 
 /// One workgroup per texel of a tile.
-pub(super) fn work(facts: &Facts) -> Work {
+pub(super) fn work(facts: &Facts) -> Work<'static> {
     let [width, height] = facts.settings.source_size;
     Work::Workgroups([width, height, 1])
 }
@@ -34,7 +34,12 @@ pub(super) fn work(facts: &Facts) -> Work {
 /// What the source function depends on besides optical depth.
 pub(super) fn inputs(facts: &Facts) -> Fingerprint {
     let settings = &facts.settings;
-    let sampling = (settings.nodes_per_leg, settings.source_grid, settings.source_size, settings.source_orders);
+    let sampling = (
+        (settings.nodes_per_leg, settings.quadrature),
+        settings.source_grid,
+        settings.source_size,
+        settings.source_orders,
+    );
     Fingerprint::of(&(facts.scene.planet.ground_albedo, sampling))
 }
 

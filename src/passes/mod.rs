@@ -24,6 +24,7 @@ mod first_source;
 mod foreground;
 mod higher_order;
 mod higher_source;
+mod interpolate;
 mod isotropic_series;
 mod local_clusters;
 mod local_media;
@@ -34,6 +35,7 @@ mod probe;
 mod recording;
 mod resources;
 mod scattering_table;
+mod sky_lattice;
 mod sky_view;
 mod terrain;
 mod view_emission;
@@ -92,19 +94,22 @@ pub const CLOUDS: [Pass; 10] = [
 ];
 
 /// What makes a frame of them, in order.
-pub const FRAME: [Pass; 7] = [
+pub const FRAME: [Pass; 9] = [
     terrain::PASS,
     clouds::PASS,
     cloud_reconstruction::PASS,
     local_media::PASS,
+    sky_lattice::PASS,
+    interpolate::PASS,
     compose::PASS,
     colour::PASS,
     display::PASS,
 ];
 
 /// Images of a frame, which are filled anew for every group of wavelengths or gather all of them.
-pub const SHARED_IMAGES: [&str; 7] = [
+pub const SHARED_IMAGES: [&str; 8] = [
     "terrain_image",
+    "sky_lattice",
     "radiance_image",
     "transmittance_image",
     "distance_image",

@@ -22,6 +22,7 @@ pub const PASS: Pass = Pass {
                 planet.radius_m,
                 planet.atmosphere_height_m,
                 settings.optical_depth_size,
+                settings.optical_depth_panels,
                 settings.table_format,
             ))
         },

@@ -10,7 +10,7 @@ use super::blocks::{
     local_light_blocks, observer_block, volume_blocks, volume_samples, volume_terms,
 };
 use super::{RenderError, Resources, definitions, ordinates};
-use crate::gpu::{Commands, GpuImage, Resource, Work};
+use crate::gpu::{Commands, GpuBuffer, GpuImage, Resource, Work};
 use crate::plan::Facts;
 
 /// Parameter blocks of a frame, by the names of the shaders' variables.
@@ -78,9 +78,10 @@ impl<'a> Recording<'a> {
         if let Some(problem) = ordinates::problem(facts) {
             resources.fill_buffer("ordinates", &problem.block())?;
         }
-        let commands = match &resources.pace {
-            None => resources.gpu.record_timed(label)?,
-            Some(pace) => resources.gpu.record_paced(label, pace)?,
+        let commands = match (&resources.pace, resources.clock) {
+            (Some(pace), _) => resources.gpu.record_paced(label, pace)?,
+            (None, Some(clock)) => resources.gpu.record_timed_by(label, clock)?,
+            (None, None) => resources.gpu.record_timed(label)?,
         };
         Ok(Self { facts, resources, parameters: Parameters::new(facts), definitions: definitions(facts), commands })
     }
@@ -103,6 +104,11 @@ impl<'a> Recording<'a> {
         let mut definitions = self.definitions.clone();
         definitions.extend(flags.iter().map(|flag| ((*flag).to_owned(), Definition::Bool(true))));
         dispatch(self.resources, &mut self.commands, pass, definitions, &self.parameters, images, work)
+    }
+
+    /// Fills a storage buffer with zeros.
+    pub fn clear(&mut self, buffer: &GpuBuffer) {
+        self.commands.clear(buffer);
     }
 
     /// What dispatches are recorded with, for passes that bring their own parameters.

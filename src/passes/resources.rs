@@ -6,7 +6,7 @@ use welkin_shaders::{Definitions, ParameterBuffers, Shader};
 
 use super::{RenderError, ShaderSources};
 use crate::gpu::{
-    AddressMode, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, NextUse, Pace,
+    AddressMode, Clock, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, NextUse, Pace,
     Pipeline, Sampler, ScreenEncoding,
 };
 use crate::plan::TableFormat;
@@ -19,6 +19,8 @@ pub struct Resources {
     sampler: Sampler,
     images: BTreeMap<&'static str, GpuImage>,
     buffers: BTreeMap<&'static str, GpuBuffer>,
+    /// What the host has filled buffers with.
+    filled: BTreeMap<&'static str, Vec<u8>>,
     /// Those of other groups of wavelengths than the one at the front.
     parked: Vec<Parked>,
     group: usize,
@@ -31,6 +33,8 @@ pub struct Resources {
     pub pace: Option<Pace>,
     /// What the picture is encoded for.
     pub screen: ScreenEncoding,
+    /// What times are taken with; none for the best that the device has.
+    pub clock: Option<Clock>,
     /// Images of the host's that a frame is drawn into, and what it does with them next.
     pub targets: Vec<(&'static str, GpuImage, NextUse)>,
 }
@@ -40,6 +44,7 @@ pub struct Resources {
 struct Parked {
     images: BTreeMap<&'static str, GpuImage>,
     buffers: BTreeMap<&'static str, GpuBuffer>,
+    filled: BTreeMap<&'static str, Vec<u8>>,
 }
 
 /// The widest format of tables that can be interpolated, by how 32-bit and half floats are filtered.
@@ -80,12 +85,14 @@ impl Resources {
             sampler,
             images: BTreeMap::new(),
             buffers: BTreeMap::new(),
+            filled: BTreeMap::new(),
             parked: Vec::new(),
             group: 0,
             pipelines: HashMap::new(),
             widest_tables,
             pace: None,
             screen: ScreenEncoding::Srgb,
+            clock: None,
             targets: Vec::new(),
         })
     }
@@ -118,16 +125,21 @@ impl Resources {
         self.images.get(name)
     }
 
-    /// Fills the storage buffer of a name.
+    /// Fills the storage buffer of a name; what it holds already is not copied again.
     pub fn fill_buffer<T: bytemuck::NoUninit>(&mut self, name: &'static str, content: &[T]) -> Result<(), GpuError> {
-        let bytes = size_of_val(content) as u64;
-        match self.buffers.get(name).filter(|buffer| buffer.bytes() == bytes) {
-            Some(buffer) => self.gpu.write_buffer(buffer, content),
+        let bytes: &[u8] = bytemuck::cast_slice(content);
+        if self.filled.get(name).is_some_and(|held| held == bytes) {
+            return Ok(());
+        }
+        self.filled.remove(name);
+        match self.buffers.get(name).filter(|buffer| buffer.bytes() == bytes.len() as u64) {
+            Some(buffer) => self.gpu.write_buffer(buffer, bytes)?,
             None => {
-                self.buffers.insert(name, self.gpu.storage_buffer_of(name, content)?);
-                Ok(())
+                self.buffers.insert(name, self.gpu.storage_buffer_of(name, bytes)?);
             }
         }
+        self.filled.insert(name, bytes.to_vec());
+        Ok(())
     }
 
     /// The storage buffer of a name, made anew unless it has this size already.
@@ -170,7 +182,8 @@ impl Resources {
         }
         let images = std::mem::replace(&mut self.images, next.images);
         let buffers = std::mem::replace(&mut self.buffers, next.buffers);
-        self.parked[self.group] = Parked { images, buffers };
+        let filled = std::mem::replace(&mut self.filled, next.filled);
+        self.parked[self.group] = Parked { images, buffers, filled };
         self.group = group;
     }
 

@@ -18,7 +18,7 @@ pub const PASS: Pass = Pass {
             let disc = |light| facts.is_wide(light).then_some((light.angular_radius_rad, light.limb_darkening));
             let discs: Vec<_> = facts.lights.iter().map(|light| disc(light)).collect();
             let settings = &facts.settings;
-            let sampling = (settings.nodes_per_leg, settings.sky_view_size);
+            let sampling = (settings.nodes_per_leg, settings.quadrature, settings.sky_view_size);
             Fingerprint::of(&(discs, facts.observer_altitude_m(), sampling)).following(elevations(facts))
         },
         bytes: |facts| shape(facts).texels() * table_format(facts).texel_bytes(),

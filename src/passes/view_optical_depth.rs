@@ -17,7 +17,10 @@ pub const PASS: Pass = Pass {
         // The same air as that of the table of optical depth, though nothing is read from it.
         reads: &["optical_depth_table"],
         writes: &["view_optical_depth_table"],
-        inputs: |facts| Fingerprint::of(&(facts.observer_altitude_m(), facts.settings.sky_view_size[1])),
+        inputs: |facts| {
+            let settings = &facts.settings;
+            Fingerprint::of(&(facts.observer_altitude_m(), settings.sky_view_size[1], settings.optical_depth_panels))
+        },
         bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
     },
     record,

@@ -240,6 +240,11 @@ impl<'a> Facts<'a> {
         !self.volumes.is_empty() || !self.local_lights.is_empty()
     }
 
+    /// Whether clouds or local media lie over the sky.
+    pub fn has_overlay(&self) -> bool {
+        !self.clouds.is_empty() || self.has_local_media()
+    }
+
     /// How many of the volumes are fog; they come first.
     pub fn fog_count(&self) -> u32 {
         self.volumes.iter().filter(|volume| volume.altitudes_m().is_some()).count() as u32

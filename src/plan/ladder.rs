@@ -107,6 +107,7 @@ fn between(a: &Settings, b: &Settings, share: f64) -> Settings {
     let (da, db, ga, gb) = (&a.directions, &b.directions, &a.source_grid, &b.source_grid);
     Settings {
         nodes_per_leg: count(a.nodes_per_leg, b.nodes_per_leg),
+        lattice_tolerance: a.lattice_tolerance.powf(1.0 - share) * b.lattice_tolerance.powf(share),
         optical_depth_size: size(a.optical_depth_size, b.optical_depth_size),
         multiple_scattering_size: size(a.multiple_scattering_size, b.multiple_scattering_size),
         directions: Directions {

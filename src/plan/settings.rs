@@ -116,11 +116,26 @@ impl fmt::Display for TableFormat {
     }
 }
 
+/// Where a view ray is sampled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Quadrature {
+    /// Gauss-Legendre on every leg of the ray.
+    GaussLegendre,
+    /// As other renderers do, for comparison: steps of equal length sampled at three tenths, and what lies behind the last
+    /// sample left out (sebh/UnrealEngineSkyAtmosphere, `Resources/RenderSkyRayMarching.hlsl`; copied by Bevy). On ascending
+    /// rays; those that descend are sampled where v is the mirror image.
+    EqualSteps,
+}
+
 /// Everything that trades accuracy for time. Sizes are (columns, rows) in texels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Gauss-Legendre nodes on each leg of a ray.
     pub nodes_per_leg: u32,
+    /// Where these nodes lie.
+    pub quadrature: Quadrature,
+    /// Panels of Simpson's rule on each leg where only optical depth is asked for.
+    pub optical_depth_panels: u32,
     /// How tables are stored.
     pub table_format: TableFormat,
     /// Optical depth: (direction, altitude).
@@ -153,6 +168,9 @@ pub struct Settings {
     pub sky_view_size: [u32; 2],
     /// Froxels, each half of the view sphere: (azimuth, elevation, distance).
     pub froxel_size: [u32; 3],
+    /// By how much pixels may differ from what they would be if each were evaluated for itself, relative: those between
+    /// the directions of a lattice are interpolated where second differences promise it. 0 evaluates every pixel.
+    pub lattice_tolerance: f64,
     /// Clouds.
     pub clouds: CloudSettings,
     /// Fog, local volumes and local lights.
@@ -167,6 +185,8 @@ impl Settings {
         match quality {
             Quality::Low => Self {
                 nodes_per_leg: 8,
+                quadrature: Quadrature::GaussLegendre,
+                optical_depth_panels: 64,
                 table_format: TableFormat::Float32,
                 optical_depth_size: [128, 48],
                 multiple_scattering_size: [32, 16],
@@ -181,12 +201,15 @@ impl Settings {
                 source_orders: 4,
                 sky_view_size: [32, 48],
                 froxel_size: [8, 16, 16],
+                lattice_tolerance: 1e-3,
                 clouds: CloudSettings::of(quality),
                 volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,
             },
             Quality::Medium => Self {
                 nodes_per_leg: 10,
+                quadrature: Quadrature::GaussLegendre,
+                optical_depth_panels: 64,
                 table_format: TableFormat::Float32,
                 optical_depth_size: [256, 64],
                 multiple_scattering_size: [48, 24],
@@ -201,12 +224,15 @@ impl Settings {
                 source_orders: 4,
                 sky_view_size: [48, 96],
                 froxel_size: [12, 24, 24],
+                lattice_tolerance: 5e-4,
                 clouds: CloudSettings::of(quality),
                 volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,
             },
             Quality::High => Self {
                 nodes_per_leg: 12,
+                quadrature: Quadrature::GaussLegendre,
+                optical_depth_panels: 64,
                 table_format: TableFormat::Float32,
                 optical_depth_size: [256, 128],
                 multiple_scattering_size: [64, 32],
@@ -221,12 +247,15 @@ impl Settings {
                 source_orders: 5,
                 sky_view_size: [80, 144],
                 froxel_size: [16, 48, 32],
+                lattice_tolerance: 2e-4,
                 clouds: CloudSettings::of(quality),
                 volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,
             },
             Quality::Ultra => Self {
                 nodes_per_leg: 16,
+                quadrature: Quadrature::GaussLegendre,
+                optical_depth_panels: 64,
                 table_format: TableFormat::Float32,
                 optical_depth_size: [512, 128],
                 multiple_scattering_size: [96, 32],
@@ -241,6 +270,7 @@ impl Settings {
                 source_orders: 6,
                 sky_view_size: [96, 192],
                 froxel_size: [24, 64, 48],
+                lattice_tolerance: 1e-4,
                 clouds: CloudSettings::of(quality),
                 volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,

@@ -26,7 +26,9 @@ impl Renderer {
         let scene = air_alone(scene);
         let facts = Facts::new(&scene, Settings::for_bake(settings), Orders::All, Outputs::default())?;
         let passes: Vec<&Pass> = TABLES.iter().filter(|pass| BAKED.contains(&pass.declaration.name)).collect();
-        self.execute("bake", &facts, &passes, |recording| record_scattering_table(recording, &settings.scattering))?;
+        self.execute_and("bake", &facts, &passes, |recording| {
+            record_scattering_table(recording, &settings.scattering)
+        })?;
         let multiple_scattering = self.table("multiple_scattering_table")?;
         let set = TableSet {
             transmittance: self.table("optical_depth_table")?,

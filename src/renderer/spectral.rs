@@ -49,7 +49,7 @@ impl Renderer {
             let at = scene.at(&part.wavelengths);
             let facts = Facts { part: Some(*part), ..Facts::new(&at, settings, Orders::All, outputs)?.in_picture() };
             self.select_group(part.index);
-            let timings = self.execute("frame", &facts, &passes, |_| Ok(()));
+            let timings = self.execute("frame", &facts, &passes);
             // The next group overwrites the images of the frame.
             FRAME.iter().for_each(|pass| self.history.forget(pass.declaration.name));
             timings
@@ -78,7 +78,7 @@ impl Renderer {
 }
 
 /// Passes whose results the groups share.
-const SHARED_PASSES: [&str; 4] = ["terrain", "compose", "colour", "display"];
+const SHARED_PASSES: [&str; 6] = ["terrain", "sky_lattice", "interpolate", "compose", "colour", "display"];
 
 fn parts(scene: &Scene) -> Vec<SpectralPart> {
     let (groups, colours) = (scene.spectrum.groups(), scene.colour());

@@ -2,9 +2,8 @@
 
 use super::{Renderer, Timings};
 use crate::gpu::{GpuImage, ImageFormat, ImageShape, NextUse, ScreenEncoding};
-use crate::passes::{CLOUDS, FRAME, RenderError, TABLES};
-use crate::plan::{Facts, Outputs, Settings};
-use crate::probe::Orders;
+use crate::passes::{FRAME, RenderError};
+use crate::plan::{Outputs, Settings};
 use crate::scene::Scene;
 
 /// Images that a frame is drawn into, each of the camera's size. What is left out is not computed, but radiance, which then
@@ -73,7 +72,7 @@ impl Renderer {
         }
         self.resources.targets = targets.all(spectral).map(|(_, name, image, _)| (name, image.clone(), next)).collect();
         self.resources.screen = targets.encoding;
-        let timings = self.render_nothing_read(scene, settings, targets.outputs());
+        let timings = self.compute(scene, settings, targets.outputs());
         self.resources.screen = ScreenEncoding::Srgb;
         // They are the host's again: the next frame must not draw into them unasked.
         self.resources.targets.clear();
@@ -82,20 +81,6 @@ impl Renderer {
             self.forget_writers_of(name);
         }
         timings
-    }
-
-    fn render_nothing_read(
-        &mut self,
-        scene: &Scene,
-        settings: Settings,
-        outputs: Outputs,
-    ) -> Result<Timings, RenderError> {
-        if scene.spectrum.group_count() > 1 {
-            return self.execute_groups(scene, settings, outputs);
-        }
-        let facts = Facts::new(scene, settings, Orders::All, outputs)?.in_picture();
-        let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
-        self.execute("frame", &facts, &passes, |_| Ok(()))
     }
 
     fn forget_writers_of(&mut self, name: &str) {

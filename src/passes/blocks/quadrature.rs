@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use bytemuck::{Pod, Zeroable};
 use welkin_lut::quadrature::gauss_legendre;
 
-use crate::plan::Settings;
+use crate::plan::{Quadrature, Settings};
 
 /// WGSL `GaussNode`.
 #[repr(C)]
@@ -26,7 +26,24 @@ fn rule(n: u32) -> impl Iterator<Item = GaussNodeBlock> {
 
 /// Nodes on each leg of a ray.
 pub fn gauss_nodes(settings: &Settings) -> Vec<GaussNodeBlock> {
-    rule(settings.nodes_per_leg).collect()
+    match settings.quadrature {
+        Quadrature::GaussLegendre => rule(settings.nodes_per_leg).collect(),
+        Quadrature::EqualSteps => equal_steps(settings.nodes_per_leg).collect(),
+    }
+}
+
+/// Where a step is sampled.
+const SAMPLED_AT: f64 = 0.3;
+
+/// Samples at equal distances, each for the way from the one before; see [`Quadrature::EqualSteps`]. Distance over length
+/// is v², so that a sample's share of the length is 2 v times its weight.
+fn equal_steps(n: u32) -> impl Iterator<Item = GaussNodeBlock> {
+    let distance = move |i: u32| (f64::from(i) + SAMPLED_AT) / f64::from(n);
+    (0..n).map(move |i| {
+        let before = if i == 0 { 0.0 } else { distance(i - 1) };
+        let v = distance(i).sqrt();
+        GaussNodeBlock { abscissa: v as f32, weight: (0.5 * (distance(i) - before) / v) as f32, padding: [0.0; 2] }
+    })
 }
 
 /// Nodes of the three parts of the view sphere, one after the other.
@@ -61,6 +78,14 @@ mod tests {
 
     fn moment(nodes: u32, degree: i32) -> f64 {
         fejer(nodes).map(|node| f64::from(node.weight) * f64::from(node.abscissa).powi(degree)).sum()
+    }
+
+    #[test]
+    fn equal_steps_leave_out_the_end_of_the_ray() {
+        let length = |node: &GaussNodeBlock| 2.0 * f64::from(node.abscissa) * f64::from(node.weight);
+        let sum: f64 = equal_steps(16).map(|node| length(&node)).sum();
+        assert!((sum - (1.0 - 0.7 / 16.0)).abs() < 1e-6, "{sum}");
+        assert!((rule(16).map(|node| length(&node)).sum::<f64>() - 1.0).abs() < 1e-6);
     }
 
     #[test]

@@ -1,0 +1,74 @@
+#define_import_path welkin::lattice
+// The lattice of directions between which the sky is interpolated: corners and centres of square cells of pixels.
+//
+// Centres tell how the light bends in a cell: their second differences along rows, and along columns what the corners then
+// lack. Cells that bend too much for a parabola, and those that hold the horizon or a disc, are evaluated pixel by pixel.
+//
+// Definitions: LATTICE_CELL, pixels along a side of a cell; OVERLAY (clouds or local media take unlike shares of light of
+// unlike origin, which is then kept apart).
+
+#import welkin::smooth_sky::{SmoothSky, SINGLE_COUNT}
+
+const CELL: u32 = #{LATTICE_CELL}u;
+
+// Layers of the lattice's image, for corners, and then again for centres. What no cloud takes apart shares a layer.
+const TRANSMITTANCE_LAYER: u32 = 0u;
+const DIFFUSE_LAYER: u32 = 1u;
+#ifdef OVERLAY
+const GROUND_STRAIGHT_LAYER: u32 = 2u;
+const GROUND_DIFFUSE_LAYER: u32 = 3u;
+const GLOW_LAYER: u32 = 4u;
+const SINGLE_LAYER: u32 = 5u;
+#else
+const SINGLE_LAYER: u32 = 2u;
+#endif
+const NODE_LAYERS: u32 = SINGLE_LAYER + SINGLE_COUNT;
+
+// What a cell is, in the fourth channel of its centre's transmittance: too near the horizon or a disc to be interpolated,
+// all sky, or all ground.
+const MIXED_CELL: f32 = 0.0;
+const SKY_CELL: f32 = 1.0;
+const GROUND_CELL: f32 = 2.0;
+
+// The list of cells that are evaluated pixel by pixel: workgroups along three axes, for an indirect dispatch, their number,
+// and then each.
+const CELL_TOTAL: u32 = 3u;
+const LIST_HEADER: u32 = 4u;
+// Workgroups that the least of devices takes along an axis; they go on to the cells beyond.
+const MOST_GROUPS: u32 = 32768u;
+
+fn entry_of_cell(cell: vec2<u32>) -> u32 {
+    return cell.x | (cell.y << 16u);
+}
+
+fn cell_of_entry(entry: u32) -> vec2<u32> {
+    return vec2<u32>(entry & 0xffffu, entry >> 16u);
+}
+
+// A corner of cells, by the number of the cell to its lower right.
+fn corner_node(nodes: texture_2d_array<f32>, corner: vec2<u32>) -> SmoothSky {
+    return node(nodes, corner, 0u);
+}
+
+fn centre_node(nodes: texture_2d_array<f32>, cell: vec2<u32>) -> SmoothSky {
+    return node(nodes, cell, NODE_LAYERS);
+}
+
+fn cell_kind(nodes: texture_2d_array<f32>, cell: vec2<u32>) -> f32 {
+    return textureLoad(nodes, cell, NODE_LAYERS + TRANSMITTANCE_LAYER, 0).a;
+}
+
+fn node(nodes: texture_2d_array<f32>, at: vec2<u32>, first: u32) -> SmoothSky {
+    var sky: SmoothSky;
+    sky.transmittance = textureLoad(nodes, at, first + TRANSMITTANCE_LAYER, 0).rgb;
+    sky.diffuse = textureLoad(nodes, at, first + DIFFUSE_LAYER, 0).rgb;
+#ifdef OVERLAY
+    sky.ground_straight = textureLoad(nodes, at, first + GROUND_STRAIGHT_LAYER, 0).rgb;
+    sky.ground_diffuse = textureLoad(nodes, at, first + GROUND_DIFFUSE_LAYER, 0).rgb;
+    sky.glow = textureLoad(nodes, at, first + GLOW_LAYER, 0).rgb;
+#endif
+    for (var i = 0u; i < SINGLE_COUNT; i++) {
+        sky.single[i] = textureLoad(nodes, at, first + SINGLE_LAYER + i, 0).rgb;
+    }
+    return sky;
+}
