@@ -55,8 +55,9 @@ struct Bend {
     is_slight: bool,
 }
 
-// What the parabola leaves, at most, over what it mends: third differences over second ones, a cell's side from the horizon.
-const RESIDUE: f32 = 0.25;
+// What the parabola leaves over what it mends: of third differences, a cell's side from the horizon, half at most. A kink of
+// the tables between two nodes may leave all of it, twice the tolerance.
+const RESIDUE: f32 = 0.5;
 
 fn bend_of(cell: vec2<u32>, corners: Corners) -> Bend {
     let view = view_through(f32(CELL) * (vec2<f32>(cell) + 0.5));
