@@ -30,10 +30,12 @@ const NO_SURFACE_M: f32 = 1e30;
 @group(1) @binding(51) var media_transmittance_image: texture_2d<f32>;
 @group(1) @binding(52) var media_beam_image: texture_2d<f32>;
 @group(1) @binding(53) var media_diffuse_image: texture_2d<f32>;
-#else ifdef CLOUDS
+#else
+#ifdef CLOUDS
 @group(1) @binding(10) var cloud_radiance_image: texture_2d<f32>;
 @group(1) @binding(11) var cloud_air_image: texture_2d<f32>;
 @group(1) @binding(12) var cloud_diffuse_image: texture_2d<f32>;
+#endif
 #endif
 
 // What clouds and local media do to a pixel: their own light, what they let through, and what they leave of the light of
@@ -57,7 +59,8 @@ fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
         max((textureLoad(media_diffuse_image, pixel, 0).rgb - left) / opacity, vec3<f32>(0.0))
     );
     return Overlay(media.rgb, through.rgb, shares, Shares(vec3<f32>(media.a), vec3<f32>(through.a)));
-#else ifdef CLOUDS
+#else
+#ifdef CLOUDS
     let clouds = textureLoad(cloud_radiance_image, pixel, 0);
     let beam = textureLoad(cloud_air_image, pixel, 0);
     let diffuse = textureLoad(cloud_diffuse_image, pixel, 0);
@@ -68,6 +71,7 @@ fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
     return Overlay(clouds.rgb, vec3<f32>(clouds.a), air, Shares(vec3<f32>(beam.a), vec3<f32>(diffuse.a)));
 #else
     return Overlay(vec3<f32>(0.0), vec3<f32>(1.0), ALL, ALL);
+#endif
 #endif
 }
 
