@@ -16,7 +16,7 @@
 #import welkin::cloud_noise::hash
 #import welkin::cluster::{cluster_of, slice_end_m, slice_of, LIGHT_WORDS, VOLUME_WORDS}
 #import welkin::geometry
-#import welkin::media_ground::{cluster_masks, fog_share, lit_by_lamps}
+#import welkin::media_ground::{cluster_masks, fog_share, lit_by_lamps, volume_share}
 #import welkin::observer::observer
 #import welkin::volume_field::{fog_density, local_span_m, place_of, volume_density, volumes, Place, FOG_COUNT}
 #import welkin::volume_source::{from_lights, mean_through, seen, Piece, Stretch}
@@ -289,6 +289,7 @@ fn ground_share(place: Place) -> vec2<f32> {
     let day = daylight(place.map, place.altitude_m);
     share = vec2<f32>(day.through, day.diffuse);
 #endif
+    share.x *= volume_share(place);
     return share * fog_share(place, share);
 }
 
