@@ -4,6 +4,7 @@ pub mod bake;
 pub mod bench;
 pub mod foreground;
 pub mod frame;
+pub mod goal;
 pub mod gpu;
 pub mod output;
 pub mod passes;

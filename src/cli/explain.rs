@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::Args;
-use welkin::plan::Outputs;
+use welkin::plan::{Outputs, Settings};
 use welkin::renderer::{Price, Renderer, Timings, prices};
 use welkin::scene::Scene;
 
 use super::accuracy::Accuracy;
 use super::backend::{failure, open_renderer};
+use super::goal::GoalArguments;
 use super::pass_table::Statistics;
 use super::{Failure, stdout};
 
@@ -24,6 +25,8 @@ pub struct Arguments {
     scene: PathBuf,
     #[command(flatten)]
     accuracy: Accuracy,
+    #[command(flatten)]
+    goal: GoalArguments,
     /// The device, by a part of its name or its index
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
@@ -41,19 +44,22 @@ const OUTPUTS: Outputs = Outputs { capture: false, picture: true };
 /// Prints the plan.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = Scene::read(&arguments.scene)?;
-    let (settings, quality) = (arguments.accuracy.settings(), arguments.accuracy.quality());
+    let choose =
+        |renderer: Option<&mut Renderer>| arguments.goal.settings(&arguments.accuracy, &scene, OUTPUTS, renderer);
     let statistics = match open_renderer(arguments.device.as_deref()) {
         Ok(mut renderer) => {
-            let timings = renderer.render(&scene, settings, OUTPUTS).map_err(failure)?.timings;
-            let prices = price(arguments, Some(&mut renderer), &scene, &timings)?;
-            Statistics::new(&scene.name, quality, Some(renderer.gpu().info()), &timings).with_prices(&prices)
+            let chosen = choose(Some(&mut renderer))?;
+            let timings = renderer.render(&scene, chosen.settings, OUTPUTS).map_err(failure)?.timings;
+            let prices = price(arguments, Some(&mut renderer), &scene, chosen.settings, &timings)?;
+            Statistics::new(&scene.name, chosen, Some(renderer.gpu().info()), &timings).with_prices(&prices)
         }
         // A device that was asked for by name must be there.
         Err(Failure::NoDevice(error)) if arguments.device.is_none() => {
             eprintln!("note: nothing is measured: {error:#}");
-            let timings = Timings::unmeasured(Renderer::plan(&scene, settings, OUTPUTS).map_err(failure)?);
-            let prices = price(arguments, None, &scene, &timings)?;
-            Statistics::new(&scene.name, quality, None, &timings).with_prices(&prices)
+            let chosen = choose(None)?;
+            let timings = Timings::unmeasured(Renderer::plan(&scene, chosen.settings, OUTPUTS).map_err(failure)?);
+            let prices = price(arguments, None, &scene, chosen.settings, &timings)?;
+            Statistics::new(&scene.name, chosen, None, &timings).with_prices(&prices)
         }
         Err(other) => return Err(other),
     };
@@ -65,10 +71,11 @@ fn price(
     arguments: &Arguments,
     renderer: Option<&mut Renderer>,
     scene: &Scene,
+    settings: Settings,
     timings: &Timings,
 ) -> Result<BTreeMap<&'static str, Price>, Failure> {
     if arguments.no_prices {
         return Ok(BTreeMap::new());
     }
-    prices(renderer, scene, arguments.accuracy.settings(), OUTPUTS, &timings.plan).map_err(failure)
+    prices(renderer, scene, settings, OUTPUTS, &timings.plan).map_err(failure)
 }

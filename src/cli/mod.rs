@@ -7,6 +7,7 @@ mod bench;
 mod compare;
 mod explain;
 mod failure;
+mod goal;
 mod limit;
 mod log;
 mod merge;

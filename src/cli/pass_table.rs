@@ -5,14 +5,20 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 use welkin::gpu::{Clock, DeviceInfo};
-use welkin::plan::{Decision, Quality};
+use welkin::plan::Decision;
 use welkin::renderer::{Price, Timings};
+
+use super::goal::{Chosen, ChosenFor};
 
 /// One run of a plan.
 #[derive(Debug, Serialize)]
 pub struct Statistics {
     scene: String,
-    quality: &'static str,
+    /// A quality, or the step of the ladder that a goal has led to.
+    quality: String,
+    /// Where an error or a time was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    goal: Option<ChosenFor>,
     /// Name of the device; absent when nothing ran.
     device: Option<String>,
     /// Its driver with version.
@@ -46,7 +52,7 @@ struct WouldCost {
 
 impl Statistics {
     /// What a plan's execution took, on a device or on none.
-    pub fn new(scene: &str, quality: Quality, device: Option<&DeviceInfo>, timings: &Timings) -> Self {
+    pub fn new(scene: &str, chosen: Chosen, device: Option<&DeviceInfo>, timings: &Timings) -> Self {
         let passes = timings.plan.passes.iter().map(|pass| PassStatistics {
             name: pass.name,
             decision: pass.decision,
@@ -57,7 +63,8 @@ impl Statistics {
         });
         Self {
             scene: scene.to_owned(),
-            quality: quality.name(),
+            quality: chosen.name,
+            goal: chosen.goal,
             device: device.map(|info| info.name.clone()),
             driver: device.map(|info| format!("{} {}", info.driver, info.driver_version)),
             clock: timings.clock.map(|clock| match clock {

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::Deviation;
+use super::goals::goal_tables;
 use super::overall::overall;
 use super::pictures::file_name;
 use super::results::{Point, SceneResults, Study};
@@ -35,6 +36,7 @@ pub fn markdown(study: &Study, command: &str) -> String {
         });
     }
     overall_tables(study, &mut text);
+    text.push_str(&goal_tables(study));
     slab_tables(study, &mut text);
     for left_out in &study.left_out {
         let _ = writeln!(text, "\nNot measured: {}: {}.", left_out.scene, left_out.reason);

@@ -15,15 +15,15 @@ use crate::cli::pass_table::Statistics;
 
 pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<Rendered, Failure> {
     let foreground = read_foreground(arguments, &scene.camera)?;
-    let accuracy = &arguments.accuracy;
     let mut renderer = open_renderer(arguments.device.as_deref())?;
-    let settings = accuracy.settings();
+    let chosen = arguments.goal.settings(&arguments.accuracy, scene, outputs, Some(&mut renderer))?;
+    let settings = chosen.settings;
     let rendered = match &foreground {
         Some(foreground) => renderer.render_over(scene, settings, outputs, foreground),
         None => renderer.render(scene, settings, outputs),
     };
     let rendered = rendered.map_err(failure)?;
-    let statistics = Statistics::new(&scene.name, accuracy.quality(), Some(renderer.gpu().info()), &rendered.timings);
+    let statistics = Statistics::new(&scene.name, chosen, Some(renderer.gpu().info()), &rendered.timings);
     Ok(Rendered {
         frame: rendered.frame,
         picture: rendered.picture.unwrap_or_default(),

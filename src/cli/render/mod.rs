@@ -16,6 +16,7 @@ use frames::{Frames, numbered};
 
 use super::accuracy::Accuracy;
 use super::backend::Backend;
+use super::goal::GoalArguments;
 use super::spectrum::SpectrumArguments;
 use super::{Failure, stdout};
 
@@ -43,6 +44,8 @@ pub struct Arguments {
     /// Frames in a second of the scene's time
     #[arg(long, value_name = "N", default_value = "24", requires = "frames", value_parser = positive)]
     frame_rate: f64,
+    #[command(flatten)]
+    goal: GoalArguments,
     /// The gpu backend's device, by a part of its name or its index
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
@@ -83,6 +86,8 @@ enum Format {
 
 /// Renders, and writes what was asked for.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let goal = arguments.goal.given().map(|(option, given)| (option, Backend::Gpu, given));
+    arguments.backend.check_options(&goal)?;
     arguments.backend.check_options(&[
         ("--quality", Backend::Gpu, arguments.accuracy.quality.is_some()),
         ("--multiple-scattering", Backend::Gpu, arguments.accuracy.multiple_scattering.is_some()),

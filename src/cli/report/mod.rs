@@ -53,6 +53,9 @@ pub struct Arguments {
     /// Folder in which references are kept [default: the platform's for what can be made again]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
+    /// Also write what settings for an error or a time are chosen from (src/goal/measured_front.json) to a file
+    #[arg(long, value_name = "JSON")]
+    learn: Option<PathBuf>,
     /// The device, by a part of its name or its index
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
@@ -153,6 +156,10 @@ fn write(study: &Study, arguments: &Arguments, pictures: &Path, images: &Path) -
     file("report.csv", &points_csv(study).map_err(failure)?)?;
     file("passes.csv", &passes_csv(study).map_err(failure)?)?;
     file("docs/cost.md", markdown(study, &machine::command_line()).as_bytes())?;
+    if let Some(path) = &arguments.learn {
+        AtomicFile::create(path)?
+            .write_all(format!("{}\n", serde_json::to_string(&report::learn(study))?).as_bytes())?;
+    }
     // Last: who sees the page finds all that it was made from.
     Ok(file("report.html", page(study, pictures).map_err(failure)?.as_bytes())?)
 }

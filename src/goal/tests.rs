@@ -1,0 +1,94 @@
+use std::collections::BTreeMap;
+
+use super::error_model::SAFETY;
+use super::*;
+use crate::plan::{Quality, Rung};
+
+/// A front of two scenes, in which each quality halves the error and trebles the time of the one below.
+fn invented() -> MeasuredFront {
+    let mut front = MeasuredFront { provenance: "invented".into(), passes: BTreeMap::new(), scenes: Vec::new() };
+    for (name, light_elevation_deg, scale) in [("noon", 60.0, 1.0), ("dusk", -3.0, 4.0)] {
+        let (mut errors, mut milliseconds) = (BTreeMap::new(), BTreeMap::new());
+        for (place, step) in steps().enumerate() {
+            errors.insert(step.to_string(), scale * 0.04 / f64::from(1 << place));
+            milliseconds.insert(step.to_string(), 10.0 * 3_f64.powi(place as i32));
+            let tables = ("sky_view".to_owned(), 9.0 * 3_f64.powi(place as i32));
+            front.passes.insert(step.to_string(), [tables, ("compose".to_owned(), 1.0)].into());
+        }
+        let traits = SceneTraits { light_elevation_deg, ..traits() };
+        front.scenes.push(MeasuredScene { name: name.into(), traits, errors, milliseconds });
+    }
+    front
+}
+
+fn steps() -> impl Iterator<Item = LadderStep> {
+    Quality::ALL.into_iter().map(|quality| LadderStep { rung: Rung::of(quality), treatment: Treatment::Harmonics })
+}
+
+fn traits() -> SceneTraits {
+    SceneTraits {
+        kind: SceneKind::Clear,
+        light_elevation_deg: 60.0,
+        ringing: 0.01,
+        optical_depth: 0.3,
+        camera_altitude_m: 2.0,
+        lowest_view_deg: 0.0,
+    }
+}
+
+fn calibration(scale: f64, power: f64) -> Calibration {
+    let mut calibration = Calibration::default();
+    for (place, step) in steps().enumerate().take(2) {
+        let tables = ("sky_view".to_owned(), scale * 9.0 * 3_f64.powf(power * place as f64));
+        calibration.add(step, [tables, ("compose".to_owned(), 5.0)].into());
+    }
+    calibration
+}
+
+#[test]
+fn a_smaller_error_asks_for_dearer_settings_and_twilight_for_more_than_noon() {
+    let front = invented();
+    let (noon, dusk) = (traits(), SceneTraits { light_elevation_deg: -3.0, ..traits() });
+    let rung = |scene: &SceneTraits, target| within_error(&front, scene, target, None).unwrap().step.rung;
+    assert!(rung(&noon, 0.1) < rung(&noon, 0.02) && rung(&noon, 0.02) < rung(&noon, 0.008));
+    assert!(rung(&noon, 0.05) < rung(&dusk, 0.05));
+    let clouds = SceneTraits { kind: SceneKind::Clouds, ..noon };
+    assert_eq!(within_error(&front, &clouds, 0.1, None), Err(GoalError::NotMeasured { kind: SceneKind::Clouds }));
+    let message = within_error(&front, &noon, 1e-4, None).unwrap_err().to_string();
+    assert!(message.contains("0.01 %") && message.contains("ultra harmonics"), "{message}");
+}
+
+#[test]
+fn a_budget_buys_the_most_accurate_that_fits_on_the_device() {
+    let front = invented();
+    // Twice as slow a device: tables of 18, 54, 162 and 486 ms, and 5 ms for the picture.
+    let here = calibration(2.0, 1.0);
+    let choice = |budget| within_time(&front, &traits(), budget, &here);
+    let medium = choice(100.0).unwrap();
+    assert_eq!(medium.step.rung, Rung::of(Quality::Medium));
+    assert!((medium.milliseconds.unwrap() - 59.0).abs() < 1e-9);
+    assert_eq!(choice(167.1).unwrap().step.rung, Rung::of(Quality::High));
+    assert!(choice(20.0).unwrap_err().to_string().contains("23 ms"));
+    // No scene with clouds was measured: the dearest that fits.
+    let clouds = SceneTraits { kind: SceneKind::Clouds, ..traits() };
+    assert_eq!(within_time(&front, &clouds, 100.0, &here).unwrap().step.rung, Rung::of(Quality::Medium));
+    // A device with units to spare takes no longer for finer tables.
+    let wide = calibration(2.0, 0.0);
+    assert_eq!(within_time(&front, &traits(), 25.0, &wide).unwrap().step.rung, Rung::of(Quality::Ultra));
+}
+
+#[test]
+fn on_scenes_that_were_left_out_targets_are_met() {
+    let front = MeasuredFront::built_in();
+    assert!(front.scenes.len() >= 20 && front.steps().len() >= 10, "{}", front.provenance);
+    let all = |safety| {
+        let targets = [0.005, 0.01, 0.02, 0.05, 0.1].into_iter();
+        let tried = targets.map(|target| TargetTrial::with_safety(front, &front.scenes, target, safety));
+        tried.fold((0, 0), |(chosen, met), trial| (chosen + trial.chosen, met + trial.met))
+    };
+    let (chosen, met) = all(SAFETY);
+    assert!(chosen > 2 * front.scenes.len() && met as f64 >= 0.95 * chosen as f64, "{met} of {chosen}");
+    // Without a margin they would not be.
+    let (chosen, met) = all(-0.5);
+    assert!((met as f64) < 0.9 * chosen as f64, "{met} of {chosen}");
+}
