@@ -325,3 +325,46 @@ fn a_damaged_file_of_compiled_pipelines_is_said_and_made_anew() {
         assert_eq!(picture("first.png"), picture(other), "{other}");
     }
 }
+
+#[test]
+fn settings_follow_from_an_error_or_a_time() {
+    let folder = folder_with(&[("scene.toml", SCENE)]);
+    let cache = folder.path().join("cache");
+    let goal = |arguments: &str| -> (String, serde_json::Value) {
+        let output =
+            welkin_with_cache(folder.path(), &format!("explain scene.toml --no-prices --json {arguments}"), &cache);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        (json["quality"].as_str().unwrap().to_owned(), json["goal"].clone())
+    };
+    let (coarse, predicted) = goal("--target-error 0.1");
+    assert!(predicted["predicted_error"].as_f64().unwrap() <= 0.1, "{predicted}");
+    assert_ne!(goal("--target-error 0.01").0, coarse, "ten times the accuracy has its price");
+    // With all the time of the world the best; the device is measured once.
+    let (best, predicted) = goal("--budget-ms 1e9");
+    let kept = || {
+        let files = fs::read_dir(&cache).unwrap().map(|entry| entry.unwrap().path());
+        let kept = files.filter(|path| path.extension().is_some_and(|ending| ending == "json"));
+        kept.map(|path| fs::read_to_string(path).unwrap()).collect::<Vec<_>>()
+    };
+    let measured = kept();
+    assert_eq!(measured.len(), 1);
+    let budget = 0.5 * predicted["predicted_milliseconds"].as_f64().unwrap();
+    let (cheaper, predicted) = goal(&format!("--budget-ms {budget}"));
+    assert!(cheaper != best && predicted["predicted_milliseconds"].as_f64().unwrap() <= budget, "{predicted}");
+    assert_eq!(kept(), measured);
+}
+
+#[test]
+fn goals_that_cannot_be_met_or_make_no_sense_are_refused() {
+    for (arguments, said) in [
+        ("--target-error 1e-9", &["0.0000001 %", "closest"][..]),
+        ("--target-error 0", &["above 0"]),
+        ("--target-error 0.1 --quality low", &["cannot be used with"]),
+        ("--target-error 0.1 --backend reference", &["--target-error", "--backend gpu"]),
+    ] {
+        refused(SCENE, RAYS, &format!("render scene.toml -o out.png {arguments}"), said);
+    }
+    let cloudy = format!("{SCENE}[[clouds]]\nkind = \"cumulus\"\n");
+    refused(&cloudy, RAYS, "render scene.toml -o out.png --target-error 0.1", &["clouds", "--budget-ms"]);
+}
