@@ -1,6 +1,12 @@
 //! Single rays through a scene: the question that `welkin probe` puts to every backend.
 
+mod ray_table;
+mod rays_error;
+
 use welkin_lut::Bands;
+
+pub use ray_table::RayTable;
+pub use rays_error::RaysError;
 
 /// A view ray and where the scene's first directional light stands for it. Angles as in a rays file, but in radians.
 #[derive(Debug, Clone, Copy, PartialEq)]

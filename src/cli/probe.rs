@@ -1,13 +1,10 @@
 //! `welkin probe`: radiance along single rays.
 
-mod error;
-mod table;
-
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use welkin::output::AtomicFile;
-use welkin::probe::{Orders, Ray, RayRadiance};
+use welkin::probe::{Orders, Ray, RayRadiance, RayTable};
 use welkin::reference::{self, Effort, Solver};
 use welkin::scene::Scene;
 
@@ -15,7 +12,6 @@ use super::Failure;
 use super::accuracy::Accuracy;
 use super::backend::{Backend, failure, open_renderer};
 use super::solver::{SolverArguments, check_sampling};
-use table::RayTable;
 
 /// Share of the radiance that one standard error may be where `--samples` is not given.
 const RELATIVE_ERROR: f64 = 0.005;

@@ -4,10 +4,8 @@ use std::fs;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+use super::{Ray, RayRadiance, RaysError};
 use csv::{ReaderBuilder, StringRecord, Trim, WriterBuilder};
-use welkin::probe::{Ray, RayRadiance};
-
-use super::error::RaysError;
 
 /// The columns of a ray, in the order of [`Ray`]'s fields.
 const RAY_COLUMNS: [&str; 5] =
@@ -47,6 +45,14 @@ impl RayTable {
     /// [`RaysError`] with the line, the column, the value and what is allowed.
     pub fn read(path: &Path, planet_radius_m: f64) -> Result<Self, RaysError> {
         let text = fs::read_to_string(path).map_err(|source| RaysError::Read { path: path.to_owned(), source })?;
+        Self::parse(&text, path, planet_radius_m)
+    }
+
+    /// The same of a text; `path` stands in messages.
+    ///
+    /// # Errors
+    /// As [`RayTable::read`].
+    pub fn parse(text: &str, path: &Path, planet_radius_m: f64) -> Result<Self, RaysError> {
         let csv_error = |source| RaysError::Csv { path: path.to_owned(), source };
         let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
         let header = reader.headers().map_err(csv_error)?.clone();
@@ -69,6 +75,9 @@ impl RayTable {
     }
 
     /// The same rows with an answer each, as CSV text.
+    ///
+    /// # Errors
+    /// None: there is a row for every answer and memory for the text.
     pub fn with_answers(&self, answers: &[RayRadiance]) -> Result<Vec<u8>, csv::Error> {
         let mut writer = WriterBuilder::new().from_writer(Vec::new());
         writer.write_record(self.header.iter().chain(ANSWER_COLUMNS))?;
