@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use serde_json::Value;
+use welkin::goal::MeasuredFront;
 
 mod json_schema;
 
@@ -68,9 +69,16 @@ fn a_report_is_whole_goes_on_where_it_was_and_tells_good_settings_from_bad() {
 
     // The same command measures nothing again, and a list of another program is refused.
     let measured = text("measured.jsonl");
-    let again = welkin(folder.path(), REPORT);
+    let again = welkin(folder.path(), &format!("{REPORT} --learn out/learned.json"));
     assert!(again.status.success() && !said(&again).contains(": low"), "{}", said(&again));
     assert_eq!(text("measured.jsonl"), measured);
+    // What choices are made from is what was measured, one standard error above.
+    let learned: MeasuredFront = serde_json::from_str(&text("learned.json")).unwrap();
+    let [scene] = &learned.scenes[..] else { panic!("{learned:?}") };
+    let high = scene.errors["low harmonics"];
+    assert!(high >= error("low harmonics") && learned.steps().len() == 3, "{learned:?}");
+    let total: f64 = learned.passes["low harmonics"].values().sum();
+    assert!((total / scene.milliseconds["low harmonics"] - 1.0).abs() < 0.01, "{learned:?}");
     fs::write(out.join("measured.jsonl"), measured.replacen("llvmpipe", "another", 1).replacen("welkin ", "else ", 1))
         .unwrap();
     let refused = welkin(folder.path(), REPORT);
