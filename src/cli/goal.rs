@@ -18,6 +18,7 @@ use welkin::scene::Scene;
 use super::Failure;
 use super::accuracy::Accuracy;
 use super::backend::{cache_folder, failure};
+use super::limit::positive;
 
 /// Times that one measurement is the shortest of: what else a machine does only ever makes them longer.
 const CALIBRATION_RUNS: usize = 2;
@@ -36,7 +37,7 @@ pub struct GoalArguments {
 }
 
 /// Settings with the name that they go by.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Chosen {
     /// In numbers.
     pub settings: Settings,
@@ -47,7 +48,7 @@ pub struct Chosen {
 }
 
 /// How a goal was met, for programs.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct ChosenFor {
     /// What was asked for, in words.
     asked: String,
@@ -117,13 +118,6 @@ impl Chosen {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("it must be a number above 0".to_owned()),
-    }
-}
-
 /// Times of a few settings for a scene on a device, from the cache or measured now.
 fn calibration(renderer: &mut Renderer, scene: &Scene, outputs: Outputs) -> Result<Calibration, Failure> {
     let path = calibration_file(renderer, scene, outputs);
@@ -166,7 +160,7 @@ fn calibration_file(renderer: &Renderer, scene: &Scene, outputs: Outputs) -> Opt
     // What stands in clear air costs as much wherever one looks; clouds and mountains do not.
     let seen = match SceneTraits::of(scene).kind {
         SceneKind::Clear => String::new(),
-        SceneKind::Terrain | SceneKind::Clouds => format!("{scene:?}"),
+        SceneKind::Terrain | SceneKind::Clouds | SceneKind::Fog => format!("{scene:?}"),
     };
     let key = Fingerprint::of(&format!("{:?}", (device, sky, (camera.width, camera.height), outputs, seen)));
     Some(cache_folder()?.join(format!("calibration-{key}.json")))

@@ -65,10 +65,7 @@ impl fmt::Display for Choice {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GoalError {
     /// No scene of the kind was measured.
-    #[error(
-        "errors in scenes with {} have not been measured; ask for --quality or --budget-ms",
-        match kind { SceneKind::Clear => "clear air", SceneKind::Terrain => "mountains", SceneKind::Clouds => "clouds" }
-    )]
+    #[error("errors in scenes with {} have not been measured; ask for --quality or --budget-ms", kind.name())]
     NotMeasured {
         /// The kind.
         kind: SceneKind,

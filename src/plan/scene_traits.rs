@@ -17,6 +17,33 @@ pub enum SceneKind {
     Terrain,
     /// Clouds.
     Clouds,
+    /// Fog, local volumes or local lights, whatever else.
+    Fog,
+}
+
+impl SceneKind {
+    /// In words: a scene with ...
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Clear => "clear air",
+            Self::Terrain => "mountains",
+            Self::Clouds => "clouds",
+            Self::Fog => "fog, volumes or lamps",
+        }
+    }
+
+    fn of(scene: &Scene) -> Self {
+        let lamps = scene.lights.iter().any(|light| matches!(light, Light::Point(_)));
+        if lamps || !scene.volumes.is_empty() {
+            Self::Fog
+        } else if scene.clouds.iter().any(|layer| !layer.is_empty()) {
+            Self::Clouds
+        } else if scene.terrain.is_some() {
+            Self::Terrain
+        } else {
+            Self::Clear
+        }
+    }
 }
 
 /// The numbers.
@@ -49,13 +76,7 @@ impl SceneTraits {
         };
         let half_field_deg = 0.5 * scene.camera.vertical_field_of_view_rad.to_degrees();
         Self {
-            kind: if scene.clouds.iter().any(|layer| !layer.is_empty()) {
-                SceneKind::Clouds
-            } else if scene.terrain.is_some() {
-                SceneKind::Terrain
-            } else {
-                SceneKind::Clear
-            },
+            kind: SceneKind::of(scene),
             light_elevation_deg: brightest(scene).map_or(-90.0, |light| light.direction.elevation_rad.to_degrees()),
             ringing: expected_ringing(&scatterers, top_m, 3),
             optical_depth: (0..BAND_COUNT).map(in_band).fold(0.0, f64::max),
@@ -119,9 +140,12 @@ mod tests {
     }
 
     #[test]
-    fn clouds_are_like_clouds_alone() {
+    fn clouds_are_like_clouds_alone_and_fog_like_fog() {
         let cloudy = traits(60.0, 1.0, "clouds = [{ kind = \"cumulus\" }]");
         assert_eq!(cloudy.kind, SceneKind::Clouds);
         assert_eq!(cloudy.distance(&traits(60.0, 1.0, "")), None);
+        let foggy = traits(60.0, 1.0, "fog = [{ extinction_per_m = 0.01, profile.exponential.scale_height_m = 50 }]");
+        assert_eq!(foggy.kind, SceneKind::Fog);
+        assert_eq!(foggy.distance(&cloudy), None);
     }
 }

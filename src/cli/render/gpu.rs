@@ -40,13 +40,13 @@ pub fn render_frames(
     Frames(numbers): &Frames,
     mut finish: impl FnMut(u32, &Scene, Rendered) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    let accuracy = &arguments.accuracy;
     let mut renderer = open_renderer(arguments.device.as_deref())?;
+    let chosen = arguments.goal.settings(&arguments.accuracy, scene, outputs, Some(&mut renderer))?;
     for number in numbers.clone() {
         let scene = Frames::scene_at(scene, number, arguments.frame_rate);
-        let rendered = renderer.render_next(&scene, accuracy.settings(), outputs).map_err(failure)?;
+        let rendered = renderer.render_next(&scene, chosen.settings, outputs).map_err(failure)?;
         let name = format!("{}, frame {number}", scene.name);
-        let statistics = Statistics::new(&name, accuracy.quality(), Some(renderer.gpu().info()), &rendered.timings);
+        let statistics = Statistics::new(&name, chosen.clone(), Some(renderer.gpu().info()), &rendered.timings);
         let rendered = Rendered {
             frame: rendered.frame,
             picture: rendered.picture.unwrap_or_default(),

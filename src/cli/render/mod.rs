@@ -17,6 +17,7 @@ use frames::{Frames, numbered};
 use super::accuracy::Accuracy;
 use super::backend::Backend;
 use super::goal::GoalArguments;
+use super::limit::positive;
 use super::spectrum::SpectrumArguments;
 use super::{Failure, stdout};
 
@@ -153,10 +154,6 @@ fn write_pictures(
         }
     }
     Ok(())
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0).ok_or("it must be above 0".to_owned())
 }
 
 fn format_of(path: &Path) -> Result<Format, Failure> {
