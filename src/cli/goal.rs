@@ -1,6 +1,6 @@
 //! An error or a time instead of a quality, and the settings that come there.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use clap::Args;
@@ -145,7 +145,7 @@ fn calibration(renderer: &mut Renderer, scene: &Scene, outputs: Outputs) -> Resu
     Ok(calibration)
 }
 
-fn keep(path: &PathBuf, calibration: &Calibration) -> anyhow::Result<()> {
+fn keep(path: &Path, calibration: &Calibration) -> anyhow::Result<()> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder '{}'", folder.display()))?;
     }
