@@ -20,9 +20,10 @@ struct Display {
 // The filmic curve's exponent; light above which everything is as bright as can be.
 const CONTRAST: f32 = 1.3;
 const WHITEST: f32 = 1e9;
-#ifdef HDR
-// cd/m2 of white, and whites of the brightest light, which is 1000 cd/m2.
+// cd/m2 of white.
 const WHITE_CD_PER_M2: f32 = 203.0;
+#ifdef HDR
+// Whites of the brightest light, which is 1000 cd/m2.
 const HEADROOM: f32 = 4.926108;
 #else
 const HEADROOM: f32 = 1.0;
