@@ -244,8 +244,8 @@ fn an_absent_effect_leaves_no_instruction_and_no_binding() {
         let stripped = compile(&stripped::without(&absent, &[prefix]), &clear);
         assert_eq!(all.spirv, stripped.spirv, "{flag} leaves instructions behind");
         assert_eq!(all.bindings, stripped.bindings, "{flag} leaves bindings behind");
-        // Control: where the effect is present it has instructions.
+        // Control: where the effect is present the shader is another.
         let present = compile(&Sources::embedded(), &rich);
-        assert!(present.spirv.len() > all.spirv.len() && present.spirv != all.spirv, "{flag}");
+        assert_ne!(present.spirv, all.spirv, "{flag}");
     }
 }

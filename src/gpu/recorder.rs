@@ -155,6 +155,10 @@ impl Commands {
             }
             (Some(pace), None) => self.record_in_pieces(&pace, label, pipeline, descriptors.as_ref(), workgroups)?,
             (Some(pace), Some(counts)) => {
+                // In a list of its own: lavapipe (Mesa 22.3) begins an indirect dispatch at the workgroup at which the last
+                // portion of a dispatch in the same list began.
+                self.finish_piece(&pace)?;
+                self.restart()?;
                 // Nobody here knows how many there are: it is one piece, whose time is learnt as that of one workgroup.
                 let portion = pace.portion(label, &self.piece, [1, 1], 1);
                 self.record_portion(label, pipeline, descriptors.as_ref(), Portion::Counted(counts.0.raw))?;
