@@ -105,8 +105,8 @@ fn what_is_interpolated_between_pixels_is_what_each_of_them_would_be() {
                 println!("{altitude_m} m, sun {sun_deg} deg: {worst:.5}, {share:.2} of the pixels are interpolated");
                 // Half of what a cell bends is below the tolerance, and a kink of the tables may leave all of it.
                 assert!(worst < 2.0 * tolerance, "{altitude_m} m, sun {sun_deg} deg: {worst}");
-                // From space most of the picture is black either way.
-                assert!(share > 0.05, "{altitude_m} m, sun {sun_deg} deg: {share}");
+                // From space most of the picture is black, whatever computes it.
+                assert!(share > 0.4 || altitude_m > 50_000.0, "{altitude_m} m, sun {sun_deg} deg: {share}");
                 let (loose, _) = differences(&picture(renderer, sun_deg, altitude_m, 0.2), &exact);
                 worst_control = worst_control.max(loose);
             }
