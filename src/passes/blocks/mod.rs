@@ -73,11 +73,15 @@ mod tests {
         shader.struct_layout(name).unwrap().size as usize
     }
 
+    macro_rules! host_offsets {
+        ($block:ty, [$($field:ident),*]) => {
+            vec![$((stringify!($field).to_owned(), offset_of!($block, $field))),*]
+        };
+    }
+
     macro_rules! assert_layout {
         ($shader:expr, $name:literal, $block:ty, [$($field:ident),*]) => {
-            let host: Vec<(String, usize)> =
-                vec![$((stringify!($field).to_owned(), offset_of!($block, $field))),*];
-            assert_eq!(offsets(&$shader, $name), host, "{}", $name);
+            assert_eq!(offsets(&$shader, $name), host_offsets!($block, [$($field),*]), "{}", $name);
         };
     }
 
@@ -149,9 +153,14 @@ mod tests {
             ]
         );
         assert_eq!(size(&clouds, "CloudLayer"), size_of::<[f32; 32]>());
-        let frame = offsets(&clouds, "CloudFrame");
-        assert_eq!(frame[5], ("half_height".to_owned(), offset_of!(CloudFrameHeader, half_height)));
-        assert_eq!(frame[7], ("altitude_m".to_owned(), offset_of!(CloudFrameHeader, altitude_m)));
+        // The header, and behind it the drift of each layer.
+        let mut frame = offsets(&clouds, "CloudFrame");
+        assert_eq!(frame.pop(), Some(("drift_m".to_owned(), size_of::<CloudFrameHeader>())));
+        let header = host_offsets!(
+            CloudFrameHeader,
+            [first_pixel, jitter, still, forward, half_width, right, half_height, up, altitude_m]
+        );
+        assert_eq!(frame, header);
     }
 
     #[test]
