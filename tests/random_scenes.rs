@@ -18,7 +18,7 @@ use welkin::renderer::Renderer;
 /// Scene files that are read and planned.
 const SCENES: u32 = 1000;
 /// One in so many of those that can be planned is rendered: nearly all of the time is the compiling of their shaders.
-const ONE_IN: usize = 30;
+const ONE_IN: usize = 20;
 
 #[test]
 fn every_random_scene_file_is_refused_with_a_reason_or_rendered_with_sound_numbers() {
@@ -29,7 +29,8 @@ fn every_random_scene_file_is_refused_with_a_reason_or_rendered_with_sound_numbe
     println!("{fates:?}");
     // The strategy means something: a good part of what it makes is refused, and a good part is not.
     let count = |fate| fates.get(&fate).copied().unwrap_or(0);
-    assert!(count(Fate::Refused) > 100 && count(Fate::Planned) > 200 && count(Fate::Rendered) > 8, "{fates:?}");
+    let planned = count(Fate::Planned) + count(Fate::Rendered);
+    assert!(count(Fate::Refused) > 100 && planned > 200 && count(Fate::Rendered) > 8, "{fates:?}");
 }
 
 #[test]
