@@ -39,8 +39,9 @@ fn definitions(grid: SourceGrid) -> Definitions {
     ];
     // What the modules that it imports ask for, with numbers of no meaning here.
     let unused = ["CONSTITUENT_COUNT", "SCATTERING_EXPONENTIAL_END", "SCATTERING_TENT_END", "SCATTERER_COUNT"];
-    let more = ["ABSORBING_EXPONENTIAL_END", "ABSORBING_TENT_END", "LOBE_COUNT", "PROFILE_GROUP_COUNT", "NODE_COUNT"];
-    let ones = unused.into_iter().chain(more).map(|name| (name, 1));
+    let more = ["ABSORBING_EXPONENTIAL_END", "ABSORBING_TENT_END", "LOBE_COUNT", "PROFILE_GROUP_COUNT"];
+    let march = ["NODE_COUNT", "FINE_PANELS"];
+    let ones = unused.into_iter().chain(more).chain(march).map(|name| (name, 1));
     numbers.into_iter().chain(ones).map(|(name, value)| (name.to_owned(), Definition::U32(value))).collect()
 }
 

@@ -33,6 +33,7 @@ fn definitions() -> Definitions {
         ("LOBE_COUNT", 1),
         ("PROFILE_GROUP_COUNT", 2),
         ("NODE_COUNT", 10),
+        ("FINE_PANELS", 64),
         ("BELOW_COUNT", 4),
         ("BAND_COUNT", 3),
         ("ABOVE_COUNT", 5),

@@ -18,7 +18,7 @@ const LEAST_SPREAD: f64 = 0.15;
 /// them.
 ///
 /// The mean of ln(error) over the measured scenes, each weighted by a Gauss curve of its distance, and above it
-/// [`SAFETY`] times their weighted standard deviation.
+/// twice their weighted standard deviation.
 pub fn predicted_error(front: &MeasuredFront, scene: &SceneTraits, step: LadderStep) -> Option<f64> {
     predicted_with(front, scene, step, SAFETY)
 }
