@@ -23,7 +23,7 @@ import time
 import mitsuba as mi
 import numpy as np
 
-ROUNDS = 7
+ROUNDS = 25
 SIZE = 64
 WIDTH = 48
 # Pixels along the plate that measures the slab's flux: the scalar variant gives every core a block of them.
