@@ -59,7 +59,7 @@ fn cloud(file: &str, size: u32, extinction: f64, albedo: f64, g: f64) -> Result<
     let bytes = std::fs::read(file).map_err(|error| format!("{file}: {error}"))?;
     let values = bytes.chunks_exact(4).map(|b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))).collect();
     let (min_m, max_m) = (DVec3::splat(-1.0), DVec3::splat(1.0));
-    let field = Arc::new(GridField::new(min_m, max_m, UVec3::splat(size), values)?);
+    let field = Arc::new(GridField::new(min_m, max_m, UVec3::splat(size), values)?.for_extinction(extinction));
     let matter = Matter {
         scattering_per_m: [albedo * extinction; 3],
         extinction_per_m: [extinction; 3],

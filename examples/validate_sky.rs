@@ -1,4 +1,5 @@
-//! The real-time sky against tables that other codes made: every row, every quality; prints Markdown.
+//! The real-time sky against tables that other codes made: every row, every quality or other named setting; prints
+//! Markdown.
 //!
 //! `cargo run --release --example validate_sky -- [--worst] [QUALITY...] [METHOD...]`, where a method is a treatment of multiple
 //! scattering by its name: then only light of all orders is compared. `--worst` names the values that are farthest off.
@@ -11,7 +12,7 @@ mod tables;
 use std::time::Instant;
 
 use welkin::gpu::DeviceRequest;
-use welkin::plan::{MultipleScattering, Quality, Settings};
+use welkin::plan::{MultipleScattering, NamedSettings, Quality, Settings};
 use welkin::probe::{Orders, RayRadiance};
 use welkin::renderer::Renderer;
 
@@ -36,7 +37,7 @@ fn print_worst(rows: &[tables::Row], found: &[RayRadiance], column: &str) {
 }
 
 fn main() {
-    let mut qualities: Vec<Quality> = Vec::new();
+    let mut qualities: Vec<NamedSettings> = Vec::new();
     let mut methods: Vec<MultipleScattering> = Vec::new();
     let (options, names): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|word| word.starts_with('-'));
     for name in names {
@@ -47,7 +48,7 @@ fn main() {
         }
     }
     if qualities.is_empty() {
-        qualities = Quality::ALL.to_vec();
+        qualities = Quality::ALL.map(NamedSettings::Quality).to_vec();
     }
     let all_comparisons = methods.is_empty();
     let comparisons = COMPARISONS.iter().filter(|(_, orders, _, _)| all_comparisons || *orders == Orders::All);
@@ -63,7 +64,12 @@ fn main() {
         let rows = tables::read(file);
         for (&quality, &multiple_scattering) in qualities.iter().flat_map(|q| methods.iter().map(move |m| (q, m))) {
             let started = Instant::now();
-            let settings = Settings { multiple_scattering, ..Settings::of(quality) };
+            let named = quality.settings();
+            let multiple_scattering = match multiple_scattering {
+                MultipleScattering::Auto => named.multiple_scattering,
+                method => method,
+            };
+            let settings = Settings { multiple_scattering, ..named };
             let found = sky::answers(&mut renderer, &rows, settings, orders, |_| {});
             let errors = sky::errors(&rows, &found, column);
             let day = [0.5, 0.99, 1.0].map(|q| format!("{:.3}", errors.quantile(q, 0.0..=90.0))).join(" / ");

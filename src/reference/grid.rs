@@ -4,8 +4,16 @@ use glam::{DVec3, UVec3};
 
 use super::field::DensityField;
 
-/// Voxels along one edge of a majorant's cell.
-const COARSE: usize = 4;
+/// Voxels along one edge of a majorant's cell where nobody says how thick the matter is.
+const USUAL_VOXELS: usize = 4;
+
+/// Most voxels along that edge: a cell that is much larger knows nothing of its matter.
+const MOST_VOXELS: usize = 16;
+
+/// Optical depth of a cell through the densest sample. Shorter cells are more often stepped through than collided in;
+/// longer ones find more collisions with matter that is not there. On the thinner grid of `benches/mitsuba/compare.py`
+/// half of it takes a quarter longer to the same error, and half as much again the same time.
+const CELL_OPTICAL_DEPTH: f64 = 1.25;
 
 /// How far ahead a ray looks for the cell that it is in, in shares of a cell.
 const AHEAD: f64 = 1e-7;
@@ -19,7 +27,10 @@ pub struct GridField {
     voxels_per_m: DVec3,
     size: [usize; 3],
     density: Vec<f64>,
+    /// Along one edge of a majorant's cell.
+    voxels_per_cell: usize,
     cell_m: DVec3,
+    cells_per_m: DVec3,
     coarse_size: [usize; 3],
     majorant: Vec<f64>,
 }
@@ -72,17 +83,44 @@ impl GridField {
         if let Some((index, &value)) = density.iter().enumerate().find(|(_, d)| !(d.is_finite() && **d >= 0.0)) {
             return Err(GridError::Sample { index, value });
         }
-        let size = [nx, ny, nz];
-        let coarse_size = size.map(|n| n.div_ceil(COARSE));
-        let (voxels_per_m, cell_m) = (voxel_m.recip(), voxel_m * COARSE as f64);
-        let mut grid = Self { min_m, voxel_m, voxels_per_m, size, density, cell_m, coarse_size, majorant: Vec::new() };
+        let (size, voxels_per_m) = ([nx, ny, nz], voxel_m.recip());
+        let (cell_m, cells_per_m, coarse_size) = (voxel_m, voxels_per_m, size);
+        let grid = Self {
+            min_m,
+            voxel_m,
+            voxels_per_m,
+            size,
+            density,
+            voxels_per_cell: 1,
+            cell_m,
+            cells_per_m,
+            coarse_size,
+            majorant: Vec::new(),
+        };
+        Ok(grid.in_cells_of(USUAL_VOXELS))
+    }
+
+    /// The same grid with cells that suit matter of this extinction at density 1, 1/m: about a mean free path long.
+    pub fn for_extinction(self, largest_per_m: f64) -> Self {
+        let densest = self.density.iter().copied().fold(0.0, f64::max);
+        let voxel_optical_depth = densest * largest_per_m * self.voxel_m.min_element();
+        // Without matter the quotient is infinite: as many voxels as there may be.
+        let voxels = (CELL_OPTICAL_DEPTH / voxel_optical_depth).round().clamp(1.0, MOST_VOXELS as f64);
+        self.in_cells_of(voxels as usize)
+    }
+
+    fn in_cells_of(self, voxels_per_cell: usize) -> Self {
+        let cell_m = self.voxel_m * voxels_per_cell as f64;
+        let coarse_size = self.size.map(|n| n.div_ceil(voxels_per_cell));
+        let mut grid = Self { voxels_per_cell, cell_m, cells_per_m: cell_m.recip(), coarse_size, ..self };
         grid.majorant = grid.coarse_majorants();
-        Ok(grid)
+        grid
     }
 
     /// The largest sample that interpolation inside each coarse cell can touch: its own voxels and one around them.
     fn coarse_majorants(&self) -> Vec<f64> {
-        let range = |cell: usize, n: usize| (cell * COARSE).saturating_sub(1)..((cell + 1) * COARSE + 1).min(n);
+        let voxels = self.voxels_per_cell;
+        let range = |cell: usize, n: usize| (cell * voxels).saturating_sub(1)..((cell + 1) * voxels + 1).min(n);
         let [cx, cy, cz] = self.coarse_size;
         let mut majorants = Vec::with_capacity(cx * cy * cz);
         for k in 0..cz {
@@ -111,41 +149,50 @@ impl GridField {
 /// A ray's way through the cells along one axis.
 #[derive(Clone, Copy)]
 struct Axis {
-    cell: i32,
-    count: i32,
-    stride: i32,
-    /// -1 or 1.
-    direction: i32,
     /// Distance along the ray to the face ahead, m; infinite where the ray runs along the faces.
     face_m: f64,
+    /// The same of the face behind that one: known before it is wanted, so that no step waits for its arithmetic.
+    next_m: f64,
+    /// Number of the face behind the one ahead.
+    next: f64,
+    /// -1 or 1.
+    direction: f64,
     start_m: f64,
     per_slope: f64,
     cell_m: f64,
+    /// Cells ahead of the one that the ray is in.
+    left: i32,
+    /// From a cell's majorant to that of the cell ahead.
+    stride: i32,
 }
 
 impl Axis {
-    /// A ray from `start_m` with the direction's component `slope` that is in the cell at `inside_m`.
-    fn new(start_m: f64, slope: f64, inside_m: f64, cell_m: f64, count: i32, stride: i32) -> Self {
-        let cell = ((inside_m / cell_m) as i32).clamp(0, count - 1);
-        let direction = if slope > 0.0 { 1 } else { -1 };
+    /// A ray from `start_m` with the direction's component `slope` that is in cell number `cell` of `count`.
+    fn new(start_m: f64, slope: f64, cell: i32, cell_m: f64, count: i32, stride: i32) -> Self {
+        let ahead = slope > 0.0;
+        let (direction, face) = if ahead { (1.0, f64::from(cell + 1)) } else { (-1.0, f64::from(cell)) };
+        let left = if ahead { count - 1 - cell } else { cell };
+        // Faces are never met by a ray along them: they count as infinitely far.
+        let (start_m, per_slope) = if slope == 0.0 { (f64::NEG_INFINITY, 1.0) } else { (start_m, slope.recip()) };
+        let stride = if ahead { stride } else { -stride };
         let mut axis =
-            Self { cell, count, stride, direction, face_m: f64::INFINITY, start_m, per_slope: slope.recip(), cell_m };
-        if slope != 0.0 {
-            axis.find_face();
-        }
+            Self { face_m: 0.0, next_m: 0.0, next: face, direction, start_m, per_slope, cell_m, left, stride };
+        axis.face_m = axis.next_face_m();
+        axis.next += direction;
+        axis.next_m = axis.next_face_m();
         axis
     }
 
-    fn find_face(&mut self) {
-        let face = self.cell + i32::from(self.direction > 0);
-        self.face_m = (f64::from(face) * self.cell_m - self.start_m) * self.per_slope;
+    fn next_face_m(&self) -> f64 {
+        (self.next * self.cell_m - self.start_m) * self.per_slope
     }
 
-    /// Into the next cell; false when there is none.
-    fn step(&mut self) -> bool {
-        self.cell += self.direction;
-        self.find_face();
-        (0..self.count).contains(&self.cell)
+    /// Into the next cell if that is so, without a branch that nobody could foretell.
+    fn step(&mut self, taken: bool) {
+        self.face_m = if taken { self.next_m } else { self.face_m };
+        self.next += if taken { self.direction } else { 0.0 };
+        self.next_m = self.next_face_m();
+        self.left -= i32::from(taken);
     }
 }
 
@@ -184,28 +231,32 @@ impl DensityField for GridField {
 
     /// From cell to cell (Amanatides & Woo 1987); faces are computed from their numbers, so that nothing drifts.
     fn march(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64, visit: &mut dyn FnMut(f64, f64) -> bool) {
-        let [cx, cy, _] = self.coarse_size.map(|n| n as i32);
-        let strides = [1, cx, cx * cy];
+        let [cx, cy, cz] = self.coarse_size.map(|n| n as i32);
+        let (counts, strides) = ([cx, cy, cz], [1, cx, cx * cy]);
         // A little further, so that a point on a face counts to the cell ahead; cells know their neighbours' values.
-        let inside = p + d * (from_m + AHEAD * self.cell_m.min_element()) - self.min_m;
+        let inside = (p + d * (from_m + AHEAD * self.cell_m.min_element()) - self.min_m) * self.cells_per_m;
         let relative = p - self.min_m;
-        let mut axes: [Axis; 3] = std::array::from_fn(|i| {
-            Axis::new(relative[i], d[i], inside[i], self.cell_m[i], self.coarse_size[i] as i32, strides[i])
-        });
-        let mut cell: i32 = axes.iter().map(|axis| axis.cell * axis.stride).sum();
+        let first: [i32; 3] = std::array::from_fn(|i| (inside[i] as i32).clamp(0, counts[i] - 1));
+        let [mut x, mut y, mut z]: [Axis; 3] =
+            std::array::from_fn(|i| Axis::new(relative[i], d[i], first[i], self.cell_m[i], counts[i], strides[i]));
+        let mut cell = first[0] + first[1] * strides[1] + first[2] * strides[2];
         let mut t = from_m;
         loop {
-            let nearest = if axes[0].face_m < axes[1].face_m { 0 } else { 1 };
-            let nearest = if axes[nearest].face_m < axes[2].face_m { nearest } else { 2 };
-            let axis = &mut axes[nearest];
-            let face_m = axis.face_m;
-            let leaves = !axis.step();
+            let face_m = x.face_m.min(y.face_m).min(z.face_m);
+            let along_x = x.face_m <= face_m;
+            let along_y = !along_x & (y.face_m <= face_m);
+            let along_z = !(along_x | along_y);
+            x.step(along_x);
+            y.step(along_y);
+            z.step(along_z);
             // The last cell holds to the end, whatever rounding makes of the face of the box.
+            let leaves = x.left | y.left | z.left < 0;
             t = if leaves { to_m } else { face_m.max(t).min(to_m) };
             if !visit(t, self.majorant[cell as usize]) || t >= to_m {
                 return;
             }
-            cell += axis.direction * axis.stride;
+            let masked = |axis: &Axis, taken: bool| axis.stride & -i32::from(taken);
+            cell += masked(&x, along_x) + masked(&y, along_y) + masked(&z, along_z);
         }
     }
 
@@ -227,8 +278,8 @@ mod tests {
 
     #[test]
     fn density_stays_below_the_majorant_along_any_ray() {
-        let grid = bumpy();
         for i in 0..200 {
+            let grid = bumpy().in_cells_of(1 + i as usize % 6);
             let f = f64::from(i);
             let p = DVec3::new(f.sin(), (2.0 * f).cos(), (3.0 * f).sin()) * 2.0;
             let d = (DVec3::new((5.0 * f).cos(), f.sin(), 0.3 * (7.0 * f).sin()) - 0.3 * p).normalize();
@@ -248,8 +299,8 @@ mod tests {
 
     #[test]
     fn a_march_reaches_the_end_and_its_majorants_hold_also_along_the_axes() {
-        let grid = bumpy();
         for i in 0..200 {
+            let grid = bumpy().in_cells_of(1 + i as usize % 6);
             let f = f64::from(i);
             let mut d = DVec3::new((5.0 * f).cos(), f.sin(), (7.0 * f).sin()).normalize();
             if i % 10 == 0 {
@@ -278,6 +329,14 @@ mod tests {
         let centre = grid.min_m + grid.voxel_m * DVec3::new(3.5, 2.5, 1.5);
         assert!((grid.density(centre) - grid.density[(7 + 2) * 9 + 3]).abs() < 1e-12);
         assert_eq!(grid.density(grid.max_m() + 1e-6), 0.0);
+    }
+
+    #[test]
+    fn cells_are_a_mean_free_path_long_where_voxels_allow_it() {
+        let voxels = |extinction_per_m: f64| bumpy().for_extinction(extinction_per_m).voxels_per_cell;
+        let densest = bumpy().density.iter().copied().fold(0.0, f64::max);
+        let per_m = CELL_OPTICAL_DEPTH / (densest * bumpy().voxel_m.min_element());
+        assert_eq!([0.0, per_m / 100.0, per_m / 5.0, per_m, 100.0 * per_m].map(voxels), [16, 16, 5, 1, 1]);
     }
 
     #[test]

@@ -50,7 +50,8 @@ impl Draw {
 
     /// Exponentially distributed with mean 1.
     pub fn exponential(&mut self) -> f64 {
-        -(-self.uniform()).ln_1p()
+        // Exact up to the logarithm: uniform numbers are multiples of 2⁻⁵³, and so are their differences from 1.
+        -(1.0 - self.uniform()).ln()
     }
 }
 

@@ -10,6 +10,7 @@ use super::field::{Body, DensityField};
 use super::grid::GridField;
 use super::matter::Matter;
 use super::shape::{Shape, clip};
+use super::spectrum;
 
 /// How far beyond a boundary a ray is looked at, m.
 const BEYOND_M: f64 = 1e-6;
@@ -159,7 +160,9 @@ impl LocalVolume {
         let (centre_m, half_size_m) = (of(parameters.centre_m), of(parameters.half_size_m));
         let grid = filled.volume.grid.as_ref().and_then(|grid| {
             let samples = grid.samples().iter().map(|&sample| f64::from(sample)).collect();
-            GridField::new(-half_size_m, half_size_m, UVec3::from_array(grid.size().map(|n| n as u32)), samples).ok()
+            let size = UVec3::from_array(grid.size().map(|n| n as u32));
+            let field = GridField::new(-half_size_m, half_size_m, size, samples).ok()?;
+            Some(field.for_extinction(spectrum::largest(filled.volume.extinction_per_m())))
         });
         let is_ellipsoid = matches!(filled.volume.form, VolumeForm::Ellipsoid { .. });
         Self { centre_m, half_size_m, is_ellipsoid, grid, filled }
