@@ -6,11 +6,11 @@
 #[path = "../tests/stripped/mod.rs"]
 mod stripped;
 
-use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
-use welkin::gpu::DeviceRequest;
+use welkin::bench::Stopwatch;
+use welkin::gpu::{DeviceRequest, Gpu};
 use welkin::passes::definitions;
 use welkin::plan::{Decision, Facts, Outputs, Plan, Quality, Settings, Skipping};
 use welkin::probe::Orders;
@@ -18,7 +18,7 @@ use welkin::renderer::{Renderer, Timings};
 use welkin::scene::{Effect, Light, Scene};
 
 /// Scenes, and elevations of the view in place of their own, deg.
-const SCENES: [(&str, Option<f64>); 11] = [
+const SCENES: [(&str, Option<f64>); 12] = [
     ("noon", None),
     ("twilight", None),
     ("moonlight", None),
@@ -30,14 +30,17 @@ const SCENES: [(&str, Option<f64>); 11] = [
     ("clouds/fair-cumulus", None),
     ("clouds/sunset", None),
     ("airliner", Some(20.0)),
+    ("fog/valley-morning", None),
 ];
 const SIZE: (u32, u32) = (320, 180);
 const OUTPUTS: Outputs = Outputs { capture: false, picture: true };
 /// Frames of each kind, in turn, of which the median counts.
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 3;
+/// Frames of the clear sky and of the build without all else, in turn.
+const CLEAR_ROUNDS: usize = 200;
 
 /// Effects as a reader knows them, with the passes that make them.
-const EFFECTS: [(&str, &[&str]); 6] = [
+const EFFECTS: [(&str, &[&str]); 7] = [
     (
         "air, once a medium",
         &["optical_depth", "first_order", "higher_order", "isotropic_series", "first_source", "higher_source"],
@@ -46,28 +49,30 @@ const EFFECTS: [(&str, &[&str]); 6] = [
     ("airglow", &["emission_order", "view_emission"]),
     ("mountains", &["terrain", "aerial_optical_depth", "aerial_perspective"]),
     ("clouds", &["cloud", "ordinates"]),
-    ("picture", &["sky_lattice", "interpolate", "compose", "display"]),
+    ("fog and lamps", &["volume_light", "local_"]),
+    ("picture", &["sky_lattice", "interpolate", "compose", "colour", "display"]),
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let quality = std::env::args().nth(1).map_or(Ok(Quality::Medium), |name| name.parse())?;
+    let quality = std::env::args().nth(1).map_or(Ok(Quality::Low), |name| name.parse())?;
     let settings = Settings::of(quality);
-    let info = Renderer::new(&DeviceRequest::default())?.gpu().info().clone();
+    let info = Gpu::new(&DeviceRequest::default())?.info().clone();
     println!("Quality {quality}, {}x{} pixels, {} ({}).\n", SIZE.0, SIZE.1, info.name, info.driver_version);
+    clear_sky(settings)?;
     let names: Vec<_> = EFFECTS.iter().map(|(name, _)| *name).collect();
-    println!("| scene | {} | sun moves | lagging | all on | share |", names.join(" | "));
-    println!("|---|{}", "---|".repeat(names.len() + 4));
+    println!("\n| scene | {} | first picture | sun moves |", names.join(" | "));
+    println!("|---|{}", "---|".repeat(names.len() + 2));
     for (name, view_deg) in SCENES {
         let scene = read(name, view_deg)?;
-        let first = Renderer::new(&DeviceRequest::default())?.render(&scene, settings, OUTPUTS)?.timings;
-        let lagging = Settings { skipping: Skipping::IN_SEQUENCE, ..settings };
         let forced = Settings { skipping: Skipping::NONE, ..settings };
-        let [own, late, all] = moving([(&scene, settings), (&scene, lagging), (&everything(&scene), forced)])?;
-        let cells: Vec<_> = EFFECTS.iter().map(|(_, passes)| cell(&first, passes)).collect();
+        let [own, all] = measure([(scene.clone(), settings), (everything(&scene), forced)])?;
+        let cells: Vec<_> = EFFECTS.iter().map(|(_, passes)| cell(&own, passes)).collect();
         let view = view_deg.map_or(String::new(), |deg| format!(", looking up {deg}°"));
-        println!("| {name}{view} | {} | {own:.1} | {late:.1} | {all:.1} | {:.2} |", cells.join(" | "), own / all);
+        let pair = |own: f64, all: f64| format!("{own:.0} of {all:.0} ms: {:.2}", own / all);
+        let (first, moving) = (pair(own.first_ms(), all.first_ms()), pair(own.moving_ms, all.moving_ms));
+        println!("| {name}{view} | {} | {first} | {moving} |", cells.join(" | "));
     }
-    clear_sky(settings)
+    Ok(())
 }
 
 fn read(name: &str, view_deg: Option<f64>) -> Result<Scene, Box<dyn Error>> {
@@ -90,61 +95,89 @@ fn everything(scene: &Scene) -> Scene {
     })
 }
 
-/// The median processor time of frames between which the first light moves by a hundredth of a degree, ms; one of each kind
-/// after the other, each on a renderer of its own.
-fn moving<const KINDS: usize>(kinds: [(&Scene, Settings); KINDS]) -> Result<[f64; KINDS], Box<dyn Error>> {
-    let mut times = [(); KINDS].map(|()| Vec::new());
-    let mut renderers = Vec::new();
-    for (scene, settings) in kinds {
-        let mut renderer = Renderer::new(&DeviceRequest::default())?;
-        renderer.render(scene, settings, OUTPUTS)?;
-        renderers.push((renderer, scene.clone(), settings));
-    }
-    for _ in 0..ROUNDS {
-        for ((renderer, scene, settings), times) in renderers.iter_mut().zip(&mut times) {
-            if let Some(Light::Directional(light)) = scene.lights.first_mut() {
-                light.direction.elevation_rad += 0.01_f64.to_radians();
-            }
-            let before = processor_ms()?;
-            renderer.render(scene, *settings, OUTPUTS)?;
-            times.push(processor_ms()? - before);
-        }
-    }
-    Ok(times.map(median))
+/// What frames of a scene cost.
+struct Cost {
+    /// All tables and a picture, with shaders that were compiled before.
+    first: Timings,
+    /// The plan of a later frame, whose light has moved by a hundredth of a degree.
+    later: Plan,
+    /// The median processor time of such a frame, ms.
+    moving_ms: f64,
 }
 
-/// A clear noon beside the same by shaders from which everything else is cut, on a renderer that never drew anything else.
+impl Cost {
+    fn first_ms(&self) -> f64 {
+        self.first.milliseconds.values().sum()
+    }
+}
+
+/// Of several scenes and settings, frame by frame in turn, each on a renderer of its own.
+fn measure<const KINDS: usize>(kinds: [(Scene, Settings); KINDS]) -> Result<[Cost; KINDS], Box<dyn Error>> {
+    let mut all = Vec::new();
+    for (scene, settings) in kinds {
+        let mut renderer = Renderer::new(&DeviceRequest::default())?;
+        // The driver compiles shaders when it first runs them.
+        renderer.compute(&scene, settings, OUTPUTS)?;
+        renderer.forget();
+        let first = renderer.compute(&scene, settings, OUTPUTS)?;
+        all.push((renderer, scene, settings, first, Vec::new()));
+    }
+    let mut later = Vec::new();
+    for _ in 0..ROUNDS {
+        later.clear();
+        for (renderer, scene, settings, _, times) in &mut all {
+            lift(scene);
+            let stopwatch = Stopwatch::start();
+            let timings = renderer.compute(scene, *settings, OUTPUTS)?;
+            times.push(stopwatch.processor_ms());
+            later.push(timings.plan);
+        }
+    }
+    let costs = all.into_iter().zip(later);
+    let costs = costs.map(|((.., first, times), later)| Cost { first, later, moving_ms: median(times) });
+    costs.collect::<Vec<_>>().try_into().map_err(|_| "as many costs as kinds".into())
+}
+
+/// Moves the first light by a hundredth of a degree.
+fn lift(scene: &mut Scene) {
+    if let Some(Light::Directional(light)) = scene.lights.first_mut() {
+        light.direction.elevation_rad += 0.01_f64.to_radians();
+    }
+}
+
+/// A clear noon beside the same by shaders from which everything else is cut, on a renderer that never drew anything else;
+/// and, so that one sees how much of the difference is chance, beside a second renderer of the same kind.
 fn clear_sky(settings: Settings) -> Result<(), Box<dyn Error>> {
-    const FRAMES: usize = 60;
     let mut scene = read("noon", None)?;
     let facts = Facts::new(&scene, settings, Orders::All, OUTPUTS)?;
-    let others = ["aerial_", "cloud", "emission_order", "ordinates", "terrain", "view_emission"];
+    let others =
+        ["aerial_", "cloud", "cluster", "emission_order", "local_", "ordinates", "terrain", "view_emission", "volume"];
     let sources = stripped::without(&stripped::absent(&definitions(&facts)), &others);
-    let mut whole = Renderer::new(&DeviceRequest::default())?;
-    let mut alone = Renderer::with_shaders(welkin::gpu::Gpu::new(&DeviceRequest::default())?, sources)?;
+    let alone =
+        || Ok::<_, Box<dyn Error>>(Renderer::with_shaders(Gpu::new(&DeviceRequest::default())?, sources.clone())?);
+    let mut renderers = [Renderer::new(&DeviceRequest::default())?, alone()?, alone()?];
     // The one that knows more has drawn more.
-    for (name, view_deg) in [("hills", None), ("clouds/fair-cumulus", None), ("moonlight", None)] {
-        whole.render(&read(name, view_deg)?, settings, OUTPUTS)?;
+    for name in ["hills", "clouds/fair-cumulus", "moonlight"] {
+        renderers[0].compute(&read(name, None)?, settings, OUTPUTS)?;
     }
-    let mut times = [Vec::new(), Vec::new()];
-    for frame in 0..FRAMES {
-        if let Some(Light::Directional(light)) = scene.lights.first_mut() {
-            light.direction.elevation_rad += 0.01_f64.to_radians();
-        }
-        for (renderer, times) in [&mut whole, &mut alone].into_iter().zip(&mut times) {
-            let before = processor_ms()?;
-            renderer.render(&scene, settings, OUTPUTS)?;
+    let mut times = [(); 3].map(|()| Vec::new());
+    for frame in 0..CLEAR_ROUNDS + 4 {
+        lift(&mut scene);
+        for (renderer, times) in renderers.iter_mut().zip(&mut times) {
+            let stopwatch = Stopwatch::start();
+            renderer.compute(&scene, settings, OUTPUTS)?;
             // The first frames compile.
             if frame >= 4 {
-                times.push(processor_ms()? - before);
+                times.push(stopwatch.processor_ms());
             }
         }
     }
-    let [whole, alone] = times.map(median);
+    let [whole, alone, again] = times.map(median);
     println!(
-        "\nA clear noon whose sun moves takes {whole:.2} ms of processor time, and {alone:.2} ms in a build without all else: \
-         {:+.1} %.",
-        100.0 * (whole / alone - 1.0)
+        "A clear noon whose sun moves takes {whole:.2} ms of processor time, and {alone:.2} ms in a build without all else: \
+         {:+.1} %. A second build without all else takes {again:.2} ms: {:+.1} %. Medians of {CLEAR_ROUNDS} frames in turn.",
+        100.0 * (whole / alone - 1.0),
+        100.0 * (again / alone - 1.0)
     );
     Ok(())
 }
@@ -154,39 +187,16 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-/// Processor time of all threads of this process, ms.
-fn processor_ms() -> Result<f64, Box<dyn Error>> {
-    let mut nanoseconds = 0.0;
-    for task in std::fs::read_dir("/proc/self/task")? {
-        // A thread may end meanwhile.
-        let Ok(text) = std::fs::read_to_string(task?.path().join("schedstat")) else { continue };
-        nanoseconds += text.split_whitespace().next().unwrap_or("0").parse::<f64>()?;
-    }
-    Ok(nanoseconds * 1e-6)
-}
-
-/// What became of an effect's passes in a scene's first frame.
-fn cell(timings: &Timings, passes: &[&str]) -> String {
-    let of_effect = |name: &str| passes.iter().any(|pass| name.starts_with(pass));
-    let Plan { passes: planned } = &timings.plan;
-    let mine: Vec<_> = planned.iter().filter(|pass| of_effect(pass.name)).collect();
-    let decided: BTreeMap<_, usize> = mine.iter().fold(BTreeMap::new(), |mut counts, pass| {
-        *counts.entry(word(pass.decision)).or_default() += 1;
-        counts
-    });
-    if decided.keys().all(|word| *word == "skip") {
+/// What becomes of an effect's passes in a scene's first frame, and in later ones.
+fn cell(cost: &Cost, passes: &[&str]) -> String {
+    let is_mine = |name: &str| passes.iter().any(|pass| name.starts_with(pass));
+    let has = |plan: &Plan, decision| plan.passes.iter().any(|pass| is_mine(pass.name) && pass.decision == decision);
+    if !has(&cost.first.plan, Decision::Run) {
         return "skip".to_owned();
     }
-    let milliseconds: f64 = mine.iter().filter_map(|pass| timings.milliseconds.get(pass.name)).sum();
-    let bytes: u64 = mine.iter().map(|pass| pass.bytes).sum();
-    let word = if decided.contains_key("run") { "run" } else { "reuse" };
-    format!("{word} {milliseconds:.0} ms, {:.1} MB", bytes as f64 / 1e6)
-}
-
-fn word(decision: Decision) -> &'static str {
-    match decision {
-        Decision::Run => "run",
-        Decision::Reuse => "reuse",
-        Decision::Skip => "skip",
-    }
+    let milliseconds: f64 =
+        cost.first.milliseconds.iter().filter(|(name, _)| is_mine(name)).map(|(_, milliseconds)| milliseconds).sum();
+    let bytes: u64 = cost.first.plan.passes.iter().filter(|pass| is_mine(pass.name)).map(|pass| pass.bytes).sum();
+    let then = if has(&cost.later, Decision::Run) { "run" } else { "reuse" };
+    format!("run {milliseconds:.1} ms, {:.1} MB; then {then}", bytes as f64 / 1e6)
 }

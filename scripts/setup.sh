@@ -61,6 +61,7 @@ need_to_test() {
     need vulkan-validationlayers have_validation_layer
     need xvfb command -v Xvfb
     need xdotool command -v xdotool
+    need openbox command -v openbox
     need_window
     need glslc command -v glslc
 }

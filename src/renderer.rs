@@ -4,6 +4,7 @@ mod bake;
 mod prices;
 mod sequence;
 mod spectral;
+mod step_times;
 mod targets;
 
 use std::collections::BTreeMap;

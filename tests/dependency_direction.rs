@@ -21,7 +21,7 @@ const MAY_USE: [(&str, &[&str]); 16] = [
     ("passes", &["foreground", "gpu", "output", "plan", "probe", "scene"]),
     ("shader_export", &["passes", "plan"]),
     ("renderer", &["foreground", "frame", "gpu", "passes", "plan", "probe", "scene"]),
-    ("window", &["frame", "gpu", "output", "passes", "plan", "reference", "renderer", "scene"]),
+    ("window", &["frame", "goal", "gpu", "output", "passes", "plan", "reference", "renderer", "scene"]),
     ("bench", &["gpu", "passes", "plan", "probe", "reference", "renderer", "scene"]),
     ("bake", &["passes", "plan", "probe", "renderer", "scene", "shader_export"]),
 ];

@@ -6,6 +6,7 @@ mod desktop;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::time::{Duration, Instant};
 
 use desktop::{Desktop, Program, until};
 use welkin::output::read_exr;
@@ -87,6 +88,11 @@ fn the_window_shows_what_render_renders_and_closes_cleanly() {
     assert!(kept.contains("520.0") && kept.contains("low"), "{kept}");
 }
 
+/// Whether a pixel is of clear sky.
+fn is_blue([red, _, blue]: [u8; 3]) -> bool {
+    blue > 60 && blue > red + 15
+}
+
 /// Whether two pixels are the same but for resolution and dither.
 fn alike(one: [u8; 3], other: [u8; 3]) -> bool {
     one.iter().zip(other).all(|(one, other)| one.abs_diff(other) <= 8)
@@ -137,10 +143,31 @@ fn what_is_edited_beside_the_window_is_seen_in_it_and_faults_change_nothing() {
     let command = program.stdout.text();
     assert!(command.contains("altitude_m = 700") && command.contains("welkin render /dev/stdin"), "{command}");
 
-    // The truth comes beside the picture.
+    // The truth comes beside the picture: the line moves, and what the two differ by is grey where they agree.
+    program.key("h");
     program.key("t");
     program.wait_for("walks a pixel, relative error", 0);
+    until("the sky to the left of the line", || is_blue(desktop.pixel(310, 60)).then_some(()));
+    program.key("y");
+    until("the difference to its right", || (!is_blue(desktop.pixel(500, 60))).then_some(()));
+    program.key("x x x");
+    until("the line further left", || (!is_blue(desktop.pixel(310, 60))).then_some(()));
     program.key("t");
+    until("the sky alone", || is_blue(desktop.pixel(500, 60)).then_some(()));
+
+    // Settings for an error are those of `render`; a time is measured on the device first, here without air that would take
+    // long.
+    program.key("5");
+    program.wait_for("settings for an error of 2 %: ", 0);
+    let airless: String =
+        ["rayleigh", "mie", "ozone"].map(|name| format!("[medium.{name}]\ndensity_factor = 0\n")).concat();
+    fs::write(folder.join("scene.toml"), format!("{SCENE}{airless}")).unwrap();
+    program.wait_for("read 'scene.toml'", program.stderr.text().rfind("settings for").unwrap());
+    program.key("6");
+    program.wait_for("settings for 100 ms: ", 0);
+    let copied = program.stdout.text().len();
+    program.key("ctrl+c");
+    until("a command", || program.stdout.text()[copied..].contains("--budget-ms 100").then_some(()));
     program.key("ctrl+q");
     let stderr = program.stderr.clone();
     assert_eq!(program.exit_code(), 0, "{}", stderr.text());
@@ -150,6 +177,60 @@ fn what_is_edited_beside_the_window_is_seen_in_it_and_faults_change_nothing() {
     let path = format!("{}:{}", path.display(), std::env::var("PATH").unwrap_or_default());
     let output = shell.current_dir(folder).env("PATH", path).env("WELKIN_CACHE", "").args(["-c", &command]).output();
     assert!(output.unwrap().status.success() && folder.join("scene.png").exists());
+}
+
+#[test]
+fn a_window_of_a_fine_screen_is_full_hidden_and_driven_by_keys_alone() {
+    let (desktop, folder) = (Desktop::managed(), folder());
+    let folder = folder.path();
+    // Two pixels to a point; settings where the platform has them.
+    fs::create_dir(folder.join("config/welkin")).unwrap();
+    fs::write(
+        folder.join("config/welkin/window.json"),
+        "{\"size\": [300, 200], \"quality\": \"low\", \"panel\": false}",
+    )
+    .unwrap();
+    let program = desktop.open_with(folder, "scene.toml", |command| {
+        command.env("XDG_CONFIG_HOME", folder.join("config")).env("WINIT_X11_SCALE_FACTOR", "2");
+    });
+    // No screen of the test shows light above white, and the log says what it offers instead.
+    program.wait_for("the screen shows no light above white; it offers B8G8R8A8", 0);
+    program.key("F12");
+    let camera = picture(&program, folder, 1).camera;
+    assert_eq!((camera.width, camera.height), (600, 400), "300 x 200 points");
+
+    // Full, and back again.
+    program.key("F11");
+    until("a full screen", || is_blue(desktop.pixel(20, 20)).then_some(()));
+    assert!(is_blue(desktop.pixel(780, 20)));
+    // The keys are shown at once, however long the sky takes: here, on a CPU, a quarter of a minute and more.
+    program.key("4");
+    std::thread::sleep(Duration::from_millis(700));
+    let pressed = Instant::now();
+    program.key("F1");
+    until("the keys", || (!is_blue(desktop.pixel(400, 120))).then_some(()));
+    assert!(pressed.elapsed() < Duration::from_secs(5), "the panel waits for the sky: {:?}", pressed.elapsed());
+    program.key("1 Escape");
+    until("no keys", || is_blue(desktop.pixel(400, 120)).then_some(()));
+    // Another scene, without a mouse: the panel's first field, its list, and the first of that.
+    program.key("h");
+    until("the panel", || (!is_blue(desktop.pixel(20, 20))).then_some(()));
+    program.key("Tab space");
+    program.key("Tab space");
+    until("another scene", || (program.title() != "welkin: scene").then_some(()));
+    program.key("Escape h Escape");
+
+    // Minimised and shown again, it goes on.
+    program.window("windowminimize", "");
+    program.window("windowactivate", "");
+    let written = program.stdout.text().matches(".exr").count();
+    program.key("F12");
+    until("a picture", || (program.stdout.text().matches(".exr").count() > written).then_some(()));
+    program.key("ctrl+q");
+    let stderr = program.stderr.clone();
+    assert_eq!(program.exit_code(), 0, "{}", stderr.text());
+    let kept = fs::read_to_string(folder.join("config/welkin/window.json")).unwrap();
+    assert!(kept.contains("300.0") && kept.contains("200.0"), "{kept}");
 }
 
 #[test]

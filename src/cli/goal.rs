@@ -5,10 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use clap::Args;
 use serde::Serialize;
-use welkin::goal::{
-    CALIBRATION_STEPS, Calibration, Choice, Goal, GoalError, MeasuredFront, PassTimes, total_ms, within_error,
-    within_time,
-};
+use welkin::goal::{CALIBRATION_STEPS, Calibration, Choice, Goal, GoalError, MeasuredFront, within_error, within_time};
 use welkin::output::AtomicFile;
 use welkin::plan::{LadderStep, Outputs, Rung, SceneKind, SceneTraits, Settings};
 use welkin::reference::picture::Fingerprint;
@@ -19,9 +16,6 @@ use super::Failure;
 use super::accuracy::Accuracy;
 use super::backend::{cache_folder, failure};
 use super::limit::positive;
-
-/// Times that one measurement is the shortest of: what else a machine does only ever makes them longer.
-const CALIBRATION_RUNS: usize = 2;
 
 /// A goal.
 #[derive(Debug, Args)]
@@ -130,15 +124,8 @@ fn calibration(renderer: &mut Renderer, scene: &Scene, outputs: Outputs) -> Resu
     let mut calibration = Calibration::default();
     for (quality, treatment) in CALIBRATION_STEPS {
         let step = LadderStep { rung: Rung::of(quality), treatment };
-        let mut runs = Vec::new();
-        for _ in 0..CALIBRATION_RUNS {
-            renderer.forget();
-            runs.push(renderer.render(scene, step.settings(), outputs).map_err(failure)?.timings.milliseconds);
-        }
-        let shortest: Option<PassTimes> = runs.into_iter().min_by(|a, b| total_ms(a).total_cmp(&total_ms(b)));
-        calibration.add(step, shortest.unwrap_or_default());
+        calibration.add(step, renderer.step_times(scene, step, outputs).map_err(failure)?);
     }
-    renderer.forget();
     if let Some(path) = path {
         keep(&path, &calibration).unwrap_or_else(|error| tracing::warn!("the measurement is not kept: {error:#}"));
     }

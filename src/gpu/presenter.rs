@@ -14,7 +14,7 @@ use super::error::{During, GpuError};
 use super::format::ScreenEncoding;
 use super::image::GpuImage;
 use super::surface::Surface;
-use super::swapchain::{Swapchain, shows_above_white};
+use super::swapchain::{Swapchain, in_words, shows_above_white};
 
 /// Frames that the host may be ahead of the device.
 pub const FRAMES_IN_FLIGHT: usize = 2;
@@ -149,7 +149,11 @@ impl Presenter {
     /// Vulkan's errors.
     pub fn offers_above_white(&self) -> Result<bool, GpuError> {
         let formats = surface(&self.context)?.formats(self.context.physical_device);
-        Ok(shows_above_white(&formats.during("vkGetPhysicalDeviceSurfaceFormatsKHR")?))
+        let formats = formats.during("vkGetPhysicalDeviceSurfaceFormatsKHR")?;
+        let above_white = shows_above_white(&formats);
+        let words = if above_white { "light above white too" } else { "no light above white" };
+        tracing::info!("the screen shows {words}; it offers {}", in_words(&formats));
+        Ok(above_white)
     }
 
     /// Asks for light above white, or no more; the next [`Presenter::prepare`] does it where the screen can.

@@ -147,6 +147,12 @@ pub(crate) fn shows_above_white(offered: &[vk::SurfaceFormatKHR]) -> bool {
     offered.iter().any(|offer| offer.color_space == Space::HDR10_ST2084_EXT)
 }
 
+/// Formats with the spaces that they are meant in, as in `B8G8R8A8_UNORM in SRGB_NONLINEAR`.
+pub(crate) fn in_words(offered: &[vk::SurfaceFormatKHR]) -> String {
+    let words = offered.iter().map(|offer| format!("{:?} in {:?}", offer.format, offer.color_space));
+    words.collect::<Vec<_>>().join(", ")
+}
+
 /// The format that pictures and panel look best in: where light above white is asked for and can be shown, half floats in
 /// linear light, or else ten bits of HDR10; and bytes or ten bits of sRGB. They are sent as they are: an `SRGB` format would
 /// encode what is encoded already.
@@ -201,6 +207,51 @@ mod tests {
         // Not on a screen that would clip it, nor where it is not wanted.
         assert_eq!(choose_format(&[bytes, linear], true), Some((bytes, ScreenEncoding::Srgb)));
         assert_eq!(choose_format(&[bytes, hdr10, linear], false), Some((bytes, ScreenEncoding::Srgb)));
+    }
+
+    /// Lists as drivers gave them (of the longest a part), with what is taken of them where light above white is wanted.
+    #[test]
+    fn of_lists_that_drivers_gave_the_right_format_is_taken() {
+        use ScreenEncoding::{ExtendedLinear, Hdr10, Srgb};
+        let [bgra, bgra_srgb] = [Format::B8G8R8A8_UNORM, Format::B8G8R8A8_SRGB];
+        let [rgba, rgba_srgb] = [Format::R8G8B8A8_UNORM, Format::R8G8B8A8_SRGB];
+        let [half, ten] = [Format::R16G16B16A16_SFLOAT, Format::A2B10G10R10_UNORM_PACK32];
+        let ten_other_way = Format::A2R10G10B10_UNORM_PACK32;
+        let sdr = Space::SRGB_NONLINEAR;
+        let each = |formats: &[Format], spaces: &[Space]| -> Vec<vk::SurfaceFormatKHR> {
+            spaces.iter().flat_map(|space| formats.iter().map(|format| offer(*format, *space))).collect()
+        };
+        // lavapipe (Mesa 22.3.6) under Xvfb, as the window's log has it.
+        let xvfb = each(&[bgra_srgb, bgra], &[sdr]);
+        // An old NVIDIA driver on Linux (gfx-rs/wgpu, issue 8076).
+        let nvidia_460 = each(&[ten, Format::A2B10G10R10_SNORM_PACK32], &[sdr]);
+        // MoltenVK on a Mac: every format in every space, light above white or not (godotengine/godot, pull request 36585).
+        let mac_spaces = [sdr, Space::ADOBERGB_NONLINEAR_EXT, Space::PASS_THROUGH_EXT, Space::EXTENDED_SRGB_LINEAR_EXT];
+        let moltenvk = each(&[bgra, bgra_srgb, half, ten_other_way], &mac_spaces);
+        // NVIDIA under Windows with HDR on: ten bits in HDR10 alone (gfx-rs/wgpu, pull request 9658), half floats in extended
+        // sRGB (KhronosGroup/Vulkan-Samples, issue 638).
+        let windows = [
+            each(&[bgra, bgra_srgb], &[sdr]),
+            each(&[half], &[Space::EXTENDED_SRGB_LINEAR_EXT]),
+            each(&[ten], &[Space::HDR10_ST2084_EXT]),
+        ]
+        .concat();
+        // Of no driver: HDR10 without extended sRGB.
+        let hdr10 = each(&[bgra, rgba, rgba_srgb, ten_other_way], &[sdr, Space::HDR10_ST2084_EXT]);
+        let cases = [
+            (xvfb, offer(bgra, sdr), Srgb),
+            (nvidia_460, offer(ten, sdr), Srgb),
+            (moltenvk, offer(bgra, sdr), Srgb),
+            (windows, offer(half, Space::EXTENDED_SRGB_LINEAR_EXT), ExtendedLinear),
+            (hdr10, offer(ten_other_way, Space::HDR10_ST2084_EXT), Hdr10),
+        ];
+        for (offered, format, encoding) in cases {
+            assert_eq!(choose_format(&offered, true), Some((format, encoding)), "{}", in_words(&offered));
+            assert_eq!(shows_above_white(&offered), encoding != Srgb);
+            // Where it is not wanted, bytes or ten bits of sRGB are taken from each list.
+            let (plain, encoding) = choose_format(&offered, false).unwrap();
+            assert_eq!((plain.color_space, encoding), (sdr, Srgb));
+        }
     }
 
     #[test]

@@ -31,6 +31,7 @@ mod local_media;
 mod multiple_scattering;
 mod optical_depth;
 pub mod ordinates;
+mod pipelines;
 mod probe;
 mod recording;
 mod resources;

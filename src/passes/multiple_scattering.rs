@@ -15,6 +15,9 @@ pub(super) fn need(facts: &Facts, treatment: Treatment) -> Need {
     if facts.orders == Orders::Single {
         return not_needed("only single scattering is asked for");
     }
+    if let Some(reason) = facts.thin_air() {
+        return not_needed(reason);
+    }
     let (chosen, reason) = (facts.treatment.words(), &facts.treatment_reason);
     if facts.treatment != treatment {
         return Need::NotNeeded(format!("multiply scattered light comes from {chosen}"));

@@ -52,6 +52,7 @@ pub struct Recording<'a> {
 impl<'a> Recording<'a> {
     /// Starts a frame whose dispatches are timed.
     pub fn new(label: &str, facts: &'a Facts<'a>, resources: &'a mut Resources) -> Result<Self, RenderError> {
+        resources.begin_recording();
         // Storage buffers among the parameters must be filled before recording starts.
         resources.fill_buffer("legendre_moments", &legendre_moments(facts, facts.degree_count()))?;
         if !facts.emitters.is_empty() {
@@ -139,7 +140,7 @@ pub(super) fn dispatch(
     images: &[(&str, &GpuImage)],
     work: Work,
 ) -> Result<(), RenderError> {
-    let pipeline = resources.pipeline(pass, definitions)?;
+    let pipeline = resources.pipeline(pass, &definitions)?;
     let mut bound = Vec::with_capacity(pipeline.bindings().len());
     for binding in pipeline.bindings() {
         let name = binding.name.as_str();

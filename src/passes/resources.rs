@@ -1,9 +1,10 @@
 //! What passes leave behind on the device, by name, and the pipelines that make it.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use welkin_shaders::{Definitions, ParameterBuffers, Shader};
 
+use super::pipelines::Pipelines;
 use super::{RenderError, ShaderSources};
 use crate::gpu::{
     AddressMode, Clock, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, NextUse, Pace,
@@ -24,7 +25,7 @@ pub struct Resources {
     /// Those of other groups of wavelengths than the one at the front.
     parked: Vec<Parked>,
     group: usize,
-    pipelines: HashMap<(&'static str, Definitions), Pipeline>,
+    pipelines: Pipelines,
     /// Where shaders that are not compiled yet will find their parameters.
     pub parameter_buffers: ParameterBuffers,
     /// The widest format of tables that the device can interpolate.
@@ -88,7 +89,7 @@ impl Resources {
             filled: BTreeMap::new(),
             parked: Vec::new(),
             group: 0,
-            pipelines: HashMap::new(),
+            pipelines: Pipelines::default(),
             widest_tables,
             pace: None,
             screen: ScreenEncoding::Srgb,
@@ -187,37 +188,26 @@ impl Resources {
         self.group = group;
     }
 
-    /// Takes other shaders. Every pipeline that is in use is compiled first: where one fails, all stay.
+    /// Takes other shaders. Every pipeline that is kept is compiled first: where one fails, all stay.
     pub fn set_shaders(&mut self, shaders: ShaderSources) -> Result<(), RenderError> {
-        let mut pipelines: HashMap<_, Pipeline> = HashMap::new();
-        for (pass, definitions) in self.pipelines.keys() {
-            let relevant = (*pass, shaders.relevant(pass, definitions)?);
-            let pipeline = match pipelines.get(&relevant) {
-                Some(pipeline) => pipeline.clone(),
-                None => compile(&self.gpu, &shaders, pass, &relevant.1, self.parameter_buffers)?,
-            };
-            pipelines.insert(relevant, pipeline.clone());
-            pipelines.insert((*pass, definitions.clone()), pipeline);
-        }
+        let compile = |pass: &str, definitions: &Definitions| {
+            compile(&self.gpu, &shaders, pass, definitions, self.parameter_buffers)
+        };
+        let pipelines = self.pipelines.compiled_anew(&shaders, compile)?;
         (self.shaders, self.pipelines) = (shaders, pipelines);
         Ok(())
     }
 
-    /// The pipeline of a pass, specialised; compiled when it is asked for the first time.
-    pub fn pipeline(&mut self, pass: &'static str, definitions: Definitions) -> Result<Pipeline, RenderError> {
-        let key = (pass, definitions);
-        if let Some(pipeline) = self.pipelines.get(&key) {
-            return Ok(pipeline.clone());
-        }
-        // Most definitions are nothing to most passes: what differs in those alone is the same pipeline.
-        let relevant = (pass, self.shaders.relevant(pass, &key.1)?);
-        let pipeline = match self.pipelines.get(&relevant) {
-            Some(pipeline) => pipeline.clone(),
-            None => compile(&self.gpu, &self.shaders, pass, &relevant.1, self.parameter_buffers)?,
-        };
-        self.pipelines.insert(relevant, pipeline.clone());
-        self.pipelines.insert(key, pipeline.clone());
-        Ok(pipeline)
+    /// The pipeline of a pass, specialised; compiled unless it is kept from before.
+    pub fn pipeline(&mut self, pass: &'static str, definitions: &Definitions) -> Result<Pipeline, RenderError> {
+        let Self { gpu, shaders, parameter_buffers, pipelines, .. } = self;
+        let compile = |relevant: &Definitions| compile(gpu, shaders, pass, relevant, *parameter_buffers);
+        pipelines.get(shaders, pass, definitions, compile)
+    }
+
+    /// Begins a recording: what earlier ones have compiled and not used for long is let go ([`Pipelines`]).
+    pub fn begin_recording(&mut self) {
+        self.pipelines.begin_recording();
     }
 }
 

@@ -7,6 +7,7 @@ use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
 
 use super::disc::is_wide;
 use super::faint::{Reach, reach};
+use super::thin;
 use super::{CloudScattering, OutOfView, PlanError, Sequence, Settings, Skipping, TableFormat, Treatment};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, GroupColour, Light, PointLight, Scene, WavelengthGroup};
@@ -129,6 +130,8 @@ pub struct Facts<'a> {
     pub sequence: Option<Sequence>,
     /// What is left out because the picture does not show it.
     pub out_of_view: OutOfView,
+    /// Why light scattered more than once does not show in air over smooth ground, if it does not.
+    thin: Option<String>,
 }
 
 impl<'a> Facts<'a> {
@@ -166,6 +169,7 @@ impl<'a> Facts<'a> {
         let (treatment, treatment_reason) = Treatment::choose(&settings, scatterers, scene.planet.atmosphere_height_m);
         let facts = Self {
             scene,
+            thin: thin::reason(scene, scatterers, &sorted.lit, &settings.skipping),
             settings,
             orders,
             outputs,
@@ -302,7 +306,12 @@ impl<'a> Facts<'a> {
 
     /// Whether light of the second and later orders, and the ground's, belongs in the picture.
     pub fn has_multiple_scattering(&self) -> bool {
-        self.orders == Orders::All && self.is_lit()
+        self.orders == Orders::All && self.is_lit() && self.thin_air().is_none()
+    }
+
+    /// Why light scattered more than once does not show, if it does not. Other matter than air may be lit by nothing else.
+    pub fn thin_air(&self) -> Option<&str> {
+        self.thin.as_deref().filter(|_| self.surface.is_none() && !self.has_overlay())
     }
 
     /// Lights that the shaders loop over; a dark scene keeps one slot.

@@ -15,6 +15,7 @@ mod scene_traits;
 mod sequence;
 mod settings;
 mod skipping;
+mod thin;
 mod view;
 mod volume_settings;
 

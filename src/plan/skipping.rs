@@ -16,6 +16,8 @@ pub struct Skipping {
     /// Optical depth of the air behind which nothing is seen of mountains: e^-18 is a fifty-millionth, and a layer as thick
     /// sends at least a few ten-thousandths of the light that falls on it back, or is black itself.
     pub hidden_depth: f64,
+    /// The largest share of a pixel's light that was scattered more than once and is left out.
+    pub thin_share: f64,
     /// How far light in a pixel may lag behind a moving light, relative; 0 where every frame is for itself.
     pub lag_share: f64,
 }
@@ -29,6 +31,7 @@ impl Skipping {
         beam_above_radii: 3.75,
         out_of_view_share: 1.0,
         hidden_depth: 18.0,
+        thin_share: 0.005,
         lag_share: 0.0,
     };
 
@@ -43,6 +46,7 @@ impl Skipping {
         beam_above_radii: f64::INFINITY,
         out_of_view_share: f64::INFINITY,
         hidden_depth: f64::INFINITY,
+        thin_share: 0.0,
         lag_share: 0.0,
     };
 }

@@ -1,12 +1,14 @@
 //! The window's events.
 
 mod actions;
+mod demands;
 mod input;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use demands::Asked;
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
@@ -14,6 +16,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::keyboard::ModifiersState;
 use winit::window::{Window, WindowId};
 
+use super::aim::Load;
 use super::comparison::Comparison;
 use super::document::Document;
 use super::held::Held;
@@ -21,12 +24,14 @@ use super::interface::Interface;
 use super::panel::{self, Schema};
 use super::session::{PICTURE_FAULT, Session, Tone};
 use super::settings::{self, Settings as Kept};
-use super::sky::{News, Picture, Sky, View};
+use super::sky::{News, Picture, Sky};
 use super::watch::{Changed, Watch};
 use super::wipe::Shown;
 use super::{Options, WindowError};
-use crate::gpu::{Gpu, GpuImage, Placed, Presenter, ScreenEncoding};
+use crate::goal::PassTimes;
+use crate::gpu::{Gpu, GpuImage, Placed, Presenter};
 use crate::passes::FRAME;
+use crate::plan::LadderStep;
 
 /// Time between two steps of a flight.
 const TICK: Duration = Duration::from_millis(16);
@@ -46,6 +51,8 @@ pub enum Event {
     Truth(u64, [GpuImage; 2], String),
     /// There is none of this view.
     NoTruth(u64, String),
+    /// What a step of the ladder takes on the device; none where it could not be measured.
+    Measured(Load, LadderStep, Option<PassTimes>),
     /// Something was done or failed.
     Said(Tone, String),
 }
@@ -91,16 +98,6 @@ struct Open {
     presenter: Presenter,
     sky: Sky,
     window: Arc<Window>,
-}
-
-/// Everything that a view depends on.
-#[derive(PartialEq)]
-struct Asked {
-    scene: Arc<crate::scene::Scene>,
-    settings: crate::plan::Settings,
-    size: [u32; 2],
-    scale: f64,
-    encoding: ScreenEncoding,
 }
 
 impl App {
@@ -199,6 +196,7 @@ impl ApplicationHandler<Event> for App {
         match event {
             Event::Sky(News::Picture(picture)) => open.receive(picture),
             Event::Sky(News::Failed(problem)) => open.session.fault(PICTURE_FAULT, problem),
+            Event::Measured(load, step, times) => open.session.chooser.learn(load, step, times),
             Event::Said(tone, text) => open.session.say(tone, text),
             Event::Changed(Changed::Scene) => open.reload(),
             Event::Changed(Changed::Shaders) => open.take_shaders(),
@@ -250,6 +248,7 @@ impl Open {
             picture.timings.milliseconds.iter().filter(|(name, _)| pixels(name) == of_pixels).map(|(_, ms)| ms).sum()
         };
         self.session.resolution.learn(picture.scale, sum(true), sum(false));
+        tracing::debug!("a picture at {:.3} of the side: {:.1} ms", picture.scale, picture.took.as_secs_f64() * 1e3);
         self.session.graph.add_sky(picture.took.as_secs_f64() * 1e3);
         self.session.timings = Some(picture.timings.clone());
         self.session.faults[PICTURE_FAULT] = None;
@@ -272,6 +271,7 @@ impl Open {
         } else if !moving {
             self.last_tick = now;
         }
+        self.choose(now);
         self.ask(now);
         self.compare(now);
         if self.panel_at.is_some_and(|at| at <= now) {
@@ -284,31 +284,6 @@ impl Open {
             Some(at) => ControlFlow::WaitUntil(at),
             None => ControlFlow::Wait,
         }
-    }
-
-    /// Asks the sky for what is to be seen, unless it was asked for that already.
-    fn ask(&mut self, now: Instant) {
-        let size = self.size();
-        if self.hidden || size.contains(&0) {
-            return;
-        }
-        let session = &self.session;
-        let still = session.resolution.is_at_rest(now);
-        let at_rest = still && session.resolution.fixed.is_none();
-        let scale = if at_rest { 1.0 } else { session.resolution.scale() };
-        let settings = if still { session.settings() } else { session.settings_in_motion() };
-        let (scene, encoding) = (session.document.scene().clone(), session.encoding);
-        // A scale that has only been found anew is no reason for another picture of the same.
-        let same = self.asked.as_ref().is_some_and(|asked| {
-            (&asked.scene, asked.settings, asked.size, asked.encoding) == (&scene, settings, size, encoding)
-                && (asked.scale == scale || (!at_rest && session.resolution.fixed.is_none()))
-        });
-        if same {
-            return;
-        }
-        let view = View { scene: session.scene_of_size(size, scale), settings, scale, encoding, may_stop: at_rest };
-        self.sky.show(view);
-        self.asked = Some(Asked { scene, settings, size, scale, encoding });
     }
 
     fn motion(&self) -> super::fly::Motion {
@@ -362,31 +337,12 @@ impl Open {
         // The sky has at least half of the device's time.
         self.draw_after = started + 2 * (laid_out + self.presenter.cost()).min(Duration::from_millis(100));
         if shown {
-            self.session.graph.add_panel(started.elapsed().as_secs_f64() * 1e3);
+            let took_ms = started.elapsed().as_secs_f64() * 1e3;
+            tracing::debug!("the panel: {took_ms:.1} ms");
+            self.session.graph.add_panel(took_ms);
         } else {
             self.panel_at = Some(started + TICK);
         }
         Ok(())
-    }
-
-    /// Begins to trace the view when it has come to rest, and gives up on one that is no longer seen.
-    fn compare(&mut self, now: Instant) {
-        if self.session.truth.is_none() {
-            return;
-        }
-        let (scene, size) = (self.session.document.scene(), self.window.inner_size().into());
-        let settings = self.session.settings();
-        let encoding = self.session.encoding;
-        let seen = |comparison: &Comparison| comparison.is_of(scene, size, settings) && comparison.encoding == encoding;
-        if self.comparison.as_ref().is_some_and(seen) {
-            return;
-        }
-        self.comparison = None;
-        if self.hidden || !self.session.resolution.is_at_rest(now) {
-            return;
-        }
-        self.session.truth = Some("truth: the path tracer begins".to_owned());
-        self.comparison = Some(Comparison::start(&self.session, size, &self.sky, &self.proxy));
-        self.window.request_redraw();
     }
 }

@@ -7,7 +7,7 @@ use toml::Table;
 use super::document::{Document, set};
 use crate::output::{AtomicFile, OutputError, write_exr, write_png};
 use crate::passes::RenderError;
-use crate::plan::{MultipleScattering, Outputs, Quality};
+use crate::plan::Outputs;
 use crate::renderer::Rendered;
 use crate::scene::{Scene, SceneError};
 
@@ -80,13 +80,11 @@ fn free_stem(folder: &Path, name: &str) -> PathBuf {
     (1..=u32::MAX).map(stem).find(|stem| !taken(stem)).unwrap_or_else(|| stem(0))
 }
 
-/// The command that renders what a window of so many pixels shows. A scene that is not saved goes along.
-pub fn command(document: &Document, size: [u32; 2], quality: Quality, method: MultipleScattering) -> String {
+/// The command that renders what a window of so many pixels shows, with the options for its settings. A scene that is not
+/// saved goes along.
+pub fn command(document: &Document, size: [u32; 2], options: &str) -> String {
     let name = quoted(&document.scene().name);
-    let mut options = format!("-o {name}.png -o {name}.exr --quality {quality}");
-    if method != MultipleScattering::default() {
-        options += &format!(" --multiple-scattering {method}");
-    }
+    let options = format!("-o {name}.png -o {name}.exr {options}");
     let table = sized(document.table(), size);
     if table == *document.table() && !document.is_modified() && document.path().exists() {
         return format!("welkin render {} {options}", quoted(&document.path().display().to_string()));
@@ -117,7 +115,7 @@ mod tests {
         let path = folder.path().join("it's.toml");
         std::fs::write(&path, TEXT).unwrap();
         let mut document = Document::new(TEXT, &path).unwrap();
-        let say = |document: &Document, size| command(document, size, Quality::High, MultipleScattering::Auto);
+        let say = |document: &Document, size| command(document, size, "--quality high");
         let saved = say(&document, [640, 360]);
         assert!(saved.starts_with("welkin render '") && saved.contains("it'\\''s.toml' -o 'it'\\''s'.png"), "{saved}");
         assert!(saved.ends_with("--quality high"), "{saved}");

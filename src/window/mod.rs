@@ -3,6 +3,7 @@
 //! The sky is computed by a thread of its own (`sky.rs`), which leaves pictures on the device; the window shows the last one
 //! that is done with the panel on top, whenever either changes, and never waits for the sky.
 
+mod aim;
 mod app;
 mod capture;
 mod comparison;

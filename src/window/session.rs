@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use toml::{Table, Value};
 
+use super::aim::{Aim, Chooser, Chosen};
 use super::day::{self, DayPath};
 use super::document::{Document, set};
 use super::fly::{self, Motion, rounded};
@@ -13,6 +14,7 @@ use super::history::History;
 use super::resolution::Resolution;
 use super::settings::Settings as Kept;
 use super::shortcuts::Action;
+use crate::goal::Goal;
 use crate::gpu::ScreenEncoding;
 use crate::plan::{MultipleScattering, Quality, Settings, Skipping};
 use crate::renderer::Timings;
@@ -39,6 +41,8 @@ pub struct Session {
     pub quality: Quality,
     /// How light scattered more than once is computed.
     pub multiple_scattering: MultipleScattering,
+    /// Settings for an error or a time in place of the quality.
+    pub chooser: Chooser,
     /// How many pixels.
     pub resolution: Resolution,
     /// Whether time runs.
@@ -85,6 +89,7 @@ impl Session {
             save_name: document.path().display().to_string(),
             quality: kept.quality.parse().unwrap_or_default(),
             multiple_scattering: MultipleScattering::default(),
+            chooser: Chooser::default(),
             document,
             history: History::default(),
             kept,
@@ -104,9 +109,49 @@ impl Session {
         }
     }
 
-    /// The numbers of the quality.
+    /// What is aimed at besides a quality.
+    pub fn goal(&self) -> Option<Goal> {
+        match self.kept.aim {
+            Aim::Quality => None,
+            Aim::Error => Some(Goal::TargetError(self.kept.target_error)),
+            Aim::Time => Some(Goal::BudgetMs(self.kept.picture_ms)),
+        }
+    }
+
+    /// The settings that were chosen for what is aimed at, in numbers; those of the quality where none were.
     pub fn settings(&self) -> Settings {
-        Settings { multiple_scattering: self.multiple_scattering, ..Settings::of(self.quality) }
+        match self.chosen().and_then(|chosen| chosen.step) {
+            Some(step) => step.settings(),
+            None => Settings { multiple_scattering: self.multiple_scattering, ..Settings::of(self.quality) },
+        }
+    }
+
+    /// What was chosen for what is aimed at.
+    pub fn chosen(&self) -> Option<&Chosen> {
+        self.chooser.chosen(self.goal()?)
+    }
+
+    /// Aims at something else.
+    pub fn aim(&mut self, aim: Aim) {
+        self.kept.aim = aim;
+        self.resolution.touch(Instant::now());
+    }
+
+    /// The options of `welkin render` that stand for the settings of pictures.
+    pub fn render_options(&self) -> String {
+        let met = self.chosen().is_some_and(|chosen| chosen.is_met);
+        match self.goal().filter(|_| met) {
+            Some(Goal::TargetError(error)) => return format!("--target-error {error}"),
+            Some(Goal::BudgetMs(milliseconds)) => return format!("--budget-ms {milliseconds}"),
+            None => {}
+        }
+        // Where a goal is not met the closest settings are presets.
+        let step = self.chosen().and_then(|chosen| chosen.step);
+        let quality = step.and_then(|step| step.rung.quality()).unwrap_or(self.quality);
+        match self.settings().multiple_scattering {
+            MultipleScattering::Auto => format!("--quality {quality}"),
+            method => format!("--quality {quality} --multiple-scattering {method}"),
+        }
     }
 
     /// The same for pictures that follow each other: while time runs, tables may lag behind the sun.

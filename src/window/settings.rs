@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::aim::Aim;
 use crate::output::{AtomicFile, OutputError};
 
 /// Names another folder for the settings; an empty one keeps nothing.
@@ -25,6 +26,12 @@ pub struct Settings {
     pub fixed_scale: Option<f64>,
     /// Low, medium, high or ultra.
     pub quality: String,
+    /// What decides about the settings of pictures.
+    pub aim: Aim,
+    /// The error that is aimed at: root mean square of the relative error of radiance.
+    pub target_error: f64,
+    /// The time that is aimed at, of a picture at rest with all of its tables, ms.
+    pub picture_ms: f64,
     /// Whether light above white is shown where the screen can.
     pub above_white: bool,
     /// Seconds of the scene in one of the clock.
@@ -41,6 +48,9 @@ impl Default for Settings {
             budget_ms: 33.0,
             fixed_scale: None,
             quality: "medium".to_owned(),
+            aim: Aim::Quality,
+            target_error: 0.02,
+            picture_ms: 100.0,
             above_white: true,
             time_rate: 600.0,
             truth_scale: 0.25,
@@ -83,6 +93,8 @@ impl Settings {
         };
         self.size = [0, 1].map(|axis| bound(self.size[axis], 200.0, 16_384.0, default.size[axis]));
         self.budget_ms = bound(self.budget_ms, 4.0, 1000.0, default.budget_ms);
+        self.target_error = bound(self.target_error, 0.001, 0.5, default.target_error);
+        self.picture_ms = bound(self.picture_ms, 1.0, 60_000.0, default.picture_ms);
         self.fixed_scale = self.fixed_scale.map(|scale| bound(scale, 0.1, 1.0, 1.0));
         self.time_rate = bound(self.time_rate, 1.0, 1e6, default.time_rate);
         self.truth_scale = bound(self.truth_scale, 0.05, 1.0, default.truth_scale);

@@ -2,6 +2,8 @@
 
 use winit::keyboard::{KeyCode, ModifiersState};
 
+use super::aim::Aim;
+
 /// What a key or a button asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
@@ -51,6 +53,8 @@ pub enum Action {
     Brighter,
     /// The quality of this number, from the cheapest.
     Quality(usize),
+    /// Settings for an error or a time in place of a quality.
+    Aim(Aim),
 }
 
 /// A key with what it does.
@@ -75,7 +79,7 @@ const fn control(code: KeyCode, action: Action, keys: &'static str, does: &'stat
 }
 
 /// All of them, in the order of the help.
-pub const SHORTCUTS: [Shortcut; 28] = [
+pub const SHORTCUTS: [Shortcut; 30] = [
     key(KeyCode::F1, Action::Help, "F1", "these keys"),
     key(KeyCode::KeyH, Action::Panel, "H", "the panel"),
     key(KeyCode::F11, Action::FullScreen, "F11", "full screen"),
@@ -102,6 +106,8 @@ pub const SHORTCUTS: [Shortcut; 28] = [
     key(KeyCode::Digit2, Action::Quality(1), "2", "quality medium"),
     key(KeyCode::Digit3, Action::Quality(2), "3", "quality high"),
     key(KeyCode::Digit4, Action::Quality(3), "4", "quality ultra"),
+    key(KeyCode::Digit5, Action::Aim(Aim::Error), "5", "settings for the target error"),
+    key(KeyCode::Digit6, Action::Aim(Aim::Time), "6", "settings for the time of a picture"),
     key(KeyCode::Slash, Action::Help, "/", "these keys"),
     Shortcut {
         code: KeyCode::KeyZ,

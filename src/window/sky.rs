@@ -58,6 +58,8 @@ type Task = Box<dyn FnOnce(&mut Renderer) + Send>;
 struct Orders {
     view: Option<View>,
     tasks: VecDeque<Task>,
+    /// Whether a view that waits comes before the next task: pictures go on while a list of tasks is worked off.
+    view_first: bool,
     /// Whether the view that is being computed may be stopped.
     stoppable: bool,
     quit: bool,
@@ -182,13 +184,14 @@ impl Worker {
             if orders.quit {
                 return None;
             }
-            if let Some(task) = orders.tasks.pop_front() {
-                orders.stoppable = false;
+            let view_first = orders.view_first && orders.view.is_some();
+            if let Some(task) = (!view_first).then(|| orders.tasks.pop_front()).flatten() {
+                (orders.stoppable, orders.view_first) = (false, true);
                 self.shared.pace.resume();
                 return Some(Next::Task(task));
             }
             if let Some(view) = orders.view.take() {
-                orders.stoppable = view.may_stop;
+                (orders.stoppable, orders.view_first) = (view.may_stop, false);
                 self.shared.pace.resume();
                 return Some(Next::View(Box::new(view)));
             }

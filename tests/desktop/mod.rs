@@ -17,6 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// An X server that draws into a file.
 pub struct Desktop {
     server: Child,
+    manager: Option<Child>,
     display: String,
     folder: TempDir,
 }
@@ -31,7 +32,16 @@ impl Desktop {
         let mut server = server.unwrap_or_else(|error| panic!("Xvfb: {error}; apt-get install xvfb xdotool"));
         let mut number = String::new();
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
-        Self { server, display: format!(":{}", number.trim()), folder }
+        Self { server, manager: None, display: format!(":{}", number.trim()), folder }
+    }
+
+    /// The same with a window manager, which full screens and minimised windows need.
+    pub fn managed() -> Self {
+        let mut desktop = Self::start();
+        let mut command = Command::new("openbox");
+        let manager = command.env("DISPLAY", &desktop.display).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+        desktop.manager = Some(manager.unwrap_or_else(|error| panic!("openbox: {error}; apt-get install openbox")));
+        desktop
     }
 
     /// What is to be seen at a place of the screen: red, green, blue.
@@ -53,10 +63,18 @@ impl Desktop {
 
     /// Opens the program's window in a folder with arguments, under the validation layer.
     pub fn open(&self, folder: &Path, arguments: &str) -> Program<'_> {
+        self.open_with(folder, arguments, |command| {
+            command.env("WELKIN_CONFIG", folder.join("config"));
+        })
+    }
+
+    /// The same with a change of its environment.
+    pub fn open_with(&self, folder: &Path, arguments: &str, change: impl FnOnce(&mut Command)) -> Program<'_> {
         let mut command = Command::new(binary());
         command.env("DISPLAY", &self.display).env_remove("WAYLAND_DISPLAY").env("WELKIN_VALIDATION", "1");
-        command.env("WELKIN_CONFIG", folder.join("config")).env("WELKIN_CACHE", folder.join("cache"));
+        command.env("WELKIN_CACHE", folder.join("cache")).env_remove("WELKIN_CONFIG");
         command.env("WELKIN_LOG", "info").env("NO_COLOR", "1");
+        change(&mut command);
         command.current_dir(folder).arg("window").args(arguments.split_whitespace());
         let mut process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let stdout = Said::listen(process.stdout.take().unwrap());
@@ -73,8 +91,10 @@ impl Desktop {
 
 impl Drop for Desktop {
     fn drop(&mut self) {
-        let _ = self.server.kill();
-        let _ = self.server.wait();
+        for process in self.manager.iter_mut().chain([&mut self.server]) {
+            let _ = process.kill();
+            let _ = process.wait();
+        }
     }
 }
 

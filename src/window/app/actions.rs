@@ -9,6 +9,7 @@ use winit::window::Fullscreen;
 use super::{Event, Open};
 use crate::passes::RenderError;
 use crate::plan::Quality;
+use crate::window::aim::Aim;
 use crate::window::capture::{self, Capture};
 use crate::window::fly::rounded;
 use crate::window::session::{SCENE_FAULT, SHADER_FAULT, Tone};
@@ -54,8 +55,9 @@ impl Open {
             Action::Quality(number) => {
                 session.quality = Quality::ALL[number];
                 session.kept.quality = session.quality.name().to_owned();
-                session.resolution.touch(Instant::now());
+                session.aim(Aim::Quality);
             }
+            Action::Aim(aim) => session.aim(aim),
         }
         self.window.request_redraw();
         false
@@ -128,7 +130,7 @@ impl Open {
     fn copy_command(&mut self) {
         let session = &mut self.session;
         let size = self.window.inner_size().into();
-        let command = capture::command(&session.document, size, session.quality, session.multiple_scattering);
+        let command = capture::command(&session.document, size, &session.render_options());
         println!("{command}");
         self.interface.context().copy_text(command);
         self.session.say(Tone::Done, "the command is in the clipboard, and on standard output");

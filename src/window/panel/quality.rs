@@ -1,8 +1,13 @@
 //! What accuracy is worth, and how fast pictures come.
 
+use std::time::Instant;
+
 use egui::{Checkbox, Color32, ComboBox, Slider, Stroke, Ui, pos2, vec2};
 
+use super::FAULT;
 use crate::plan::{MultipleScattering, Quality};
+use crate::window::aim::Aim;
+use crate::window::fly::rounded;
 use crate::window::graph::Graph;
 use crate::window::resolution::LEAST;
 use crate::window::session::Session;
@@ -11,21 +16,20 @@ const SKY: Color32 = Color32::from_rgb(110, 170, 255);
 const PANEL: Color32 = Color32::from_rgb(230, 190, 90);
 
 pub fn show(ui: &mut Ui, session: &mut Session) {
-    let before = (session.quality, session.multiple_scattering);
+    let mut aim = session.kept.aim;
     ui.horizontal(|ui| {
-        for quality in Quality::ALL {
-            ui.selectable_value(&mut session.quality, quality, quality.name());
+        ui.label("settings by");
+        for other in Aim::ALL {
+            ui.selectable_value(&mut aim, other, other.name());
         }
     });
-    let name = session.multiple_scattering.name();
-    ComboBox::from_label("multiple scattering").selected_text(name).show_ui(ui, |ui| {
-        for method in MultipleScattering::ALL {
-            ui.selectable_value(&mut session.multiple_scattering, method, method.name());
-        }
-    });
-    if before != (session.quality, session.multiple_scattering) {
-        session.kept.quality = session.quality.name().to_owned();
-        session.resolution.touch(std::time::Instant::now());
+    if aim != session.kept.aim {
+        session.aim(aim);
+    }
+    match aim {
+        Aim::Quality => by_quality(ui, session),
+        Aim::Error => by_error(ui, session),
+        Aim::Time => by_time(ui, session),
     }
     let resolution = &mut session.resolution;
     ui.add(Slider::new(&mut resolution.budget_ms, 4.0..=500.0).logarithmic(true).suffix(" ms").text("frame budget"));
@@ -49,6 +53,63 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     ui.add_enabled(offered, light).on_disabled_hover_text("this screen shows none");
     graph(ui, &session.graph, session.resolution.budget_ms as f32);
     ui.label(&session.device);
+}
+
+fn by_quality(ui: &mut Ui, session: &mut Session) {
+    let before = (session.quality, session.multiple_scattering);
+    ui.horizontal(|ui| {
+        for quality in Quality::ALL {
+            ui.selectable_value(&mut session.quality, quality, quality.name());
+        }
+    });
+    let name = session.multiple_scattering.name();
+    ComboBox::from_label("multiple scattering").selected_text(name).show_ui(ui, |ui| {
+        for method in MultipleScattering::ALL {
+            ui.selectable_value(&mut session.multiple_scattering, method, method.name());
+        }
+    });
+    if before != (session.quality, session.multiple_scattering) {
+        session.kept.quality = session.quality.name().to_owned();
+        session.resolution.touch(Instant::now());
+    }
+}
+
+fn by_error(ui: &mut Ui, session: &mut Session) {
+    let mut percent = 100.0 * session.kept.target_error;
+    let slider =
+        Slider::new(&mut percent, 0.1..=50.0).logarithmic(true).suffix(" %").max_decimals(2).text("target error");
+    if ui.add(slider).on_hover_text("root mean square of the relative error of radiance over the picture").changed() {
+        session.kept.target_error = rounded(percent) / 100.0;
+        session.resolution.touch(Instant::now());
+    }
+    chosen(ui, session);
+}
+
+fn by_time(ui: &mut Ui, session: &mut Session) {
+    let slider =
+        Slider::new(&mut session.kept.picture_ms, 1.0..=60_000.0).logarithmic(true).suffix(" ms").max_decimals(1);
+    if ui
+        .add(slider.text("picture"))
+        .on_hover_text("time of a picture at rest on the device, all tables included")
+        .changed()
+    {
+        session.kept.picture_ms = rounded(session.kept.picture_ms);
+        session.resolution.touch(Instant::now());
+    }
+    chosen(ui, session);
+}
+
+/// The settings that were chosen, with what is predicted of them.
+fn chosen(ui: &mut Ui, session: &Session) {
+    match (session.chooser.progress(), session.chosen()) {
+        (Some([done, all]), _) => ui.label(format!("measuring the device: {done} of {all}")),
+        (None, Some(chosen)) if chosen.is_met => ui.label(&chosen.words),
+        (None, Some(chosen)) => ui.colored_label(FAULT, &chosen.words),
+        (None, None) => ui.label("chosen when nothing moves"),
+    };
+    if session.chosen().is_none_or(|chosen| chosen.step.is_none()) {
+        ui.label(format!("until then: quality {}", session.quality));
+    }
 }
 
 /// Times of past frames as lines, with the budget.
