@@ -67,6 +67,14 @@ fn the_window_shows_what_render_renders_and_closes_cleanly() {
     program.key("ctrl+z");
     until("no change", || (program.title() == "welkin: scene").then_some(()));
 
+    // What is saved is the scene that is seen.
+    program.key("bracketright");
+    until("a later time", || (program.title() == "welkin: scene *").then_some(()));
+    program.key("ctrl+s");
+    until("a saved scene", || (program.title() == "welkin: scene").then_some(()));
+    let saved = Scene::read(&folder.join("scene.toml")).unwrap();
+    assert_ne!(saved.lights, scene.lights, "the sun has moved");
+
     // Another size, then hidden and shown again: the window goes on.
     program.window("windowsize", "520 300");
     until("another size", || {

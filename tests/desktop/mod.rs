@@ -25,9 +25,15 @@ pub struct Desktop {
 impl Desktop {
     /// Starts a server on a free display.
     pub fn start() -> Self {
+        Self::of_size([800, 600])
+    }
+
+    /// The same with a screen of so many pixels.
+    pub fn of_size([width, height]: [u32; 2]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let mut command = Command::new("Xvfb");
-        command.args(["-displayfd", "1", "-screen", "0", "800x600x24", "-fbdir"]).arg(folder.path());
+        let screen = format!("{width}x{height}x24");
+        command.args(["-displayfd", "1", "-screen", "0", &screen, "-fbdir"]).arg(folder.path());
         let server = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
         let mut server = server.unwrap_or_else(|error| panic!("Xvfb: {error}; apt-get install xvfb xdotool"));
         let mut number = String::new();
@@ -46,11 +52,12 @@ impl Desktop {
 
     /// What is to be seen at a place of the screen: red, green, blue.
     pub fn pixel(&self, x: usize, y: usize) -> [u8; 3] {
-        let screen = std::fs::read(self.folder.path().join("Xvfb_screen0")).unwrap();
-        // The format of xwd: big-endian numbers, of which these are the header's length, bytes a row, number of colours.
-        let number = |index: usize| u32::from_be_bytes(screen[4 * index..4 * index + 4].try_into().unwrap()) as usize;
-        let at = number(0) + 12 * number(19) + y * number(12) + 4 * x;
-        [screen[at + 2], screen[at + 1], screen[at]]
+        self.screen().pixel(x, y)
+    }
+
+    /// All that is to be seen.
+    pub fn screen(&self) -> Screen {
+        Screen(std::fs::read(self.folder.path().join("Xvfb_screen0")).unwrap())
     }
 
     /// Sends keys, clicks and sizes.
@@ -95,6 +102,20 @@ impl Drop for Desktop {
             let _ = process.kill();
             let _ = process.wait();
         }
+    }
+}
+
+/// A screen in the format of xwd.
+pub struct Screen(Vec<u8>);
+
+impl Screen {
+    /// Red, green, blue.
+    pub fn pixel(&self, x: usize, y: usize) -> [u8; 3] {
+        let Self(bytes) = self;
+        // Big-endian numbers, of which these are the header's length, bytes a row, number of colours.
+        let number = |index: usize| u32::from_be_bytes(bytes[4 * index..4 * index + 4].try_into().unwrap()) as usize;
+        let at = number(0) + 12 * number(19) + y * number(12) + 4 * x;
+        [bytes[at + 2], bytes[at + 1], bytes[at]]
     }
 }
 
