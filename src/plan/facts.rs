@@ -131,7 +131,7 @@ pub struct Facts<'a> {
     /// What is left out because the picture does not show it.
     pub out_of_view: OutOfView,
     /// Why light scattered more than once does not show in air over smooth ground, if it does not.
-    thin: Option<String>,
+    pub thin: Option<String>,
 }
 
 impl<'a> Facts<'a> {

@@ -6,6 +6,7 @@ use std::path::Path;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
+use super::goals::goal_section;
 use super::markdown::{error_with_bar, milliseconds, percent};
 use super::overall::overall;
 use super::pictures::{FULL_DIFFERENCE, difference_path, picture_path};
@@ -56,6 +57,7 @@ pub fn page(study: &Study, pictures: &Path) -> Result<String, ReportError> {
             html.push_str("</details>\n");
         }
     }
+    html.push_str(&goal_section(study));
     slabs(&mut html, study)?;
     html.push_str("</body></html>\n");
     Ok(html)

@@ -206,12 +206,16 @@ mod tests {
             assert_eq!(chooser.choose(goal, &noon, SIZE), None, "an error needs no measurement");
             chooser.chosen(goal).unwrap().clone()
         };
-        let [coarse, fine, never] = [0.2, 0.02, 1e-6].map(&mut step);
+        let (front, traits) = (MeasuredFront::built_in(), SceneTraits::of(&noon));
+        let Err(GoalError::TooClose { closest, .. }) = within_error(front, &traits, 1e-6, None) else {
+            panic!("reached")
+        };
+        let [coarse, fine, never] = [0.2, closest.error.unwrap(), 1e-6].map(&mut step);
         assert!(coarse.is_met && fine.is_met && coarse.step != fine.step, "{coarse:?} {fine:?}");
-        assert!(!never.is_met && never.step.is_some() && never.words.contains("no settings"), "{never:?}");
-        // It is what `welkin render` chooses.
-        let choice = within_error(MeasuredFront::built_in(), &SceneTraits::of(&noon), 0.02, None).unwrap();
-        assert_eq!((fine.step, fine.words), (Some(choice.step), choice.to_string()));
+        assert!(!never.is_met && never.step == Some(closest.step) && never.words.contains("no settings"), "{never:?}");
+        // They are those of `welkin render`.
+        let choice = within_error(front, &traits, 0.2, None).unwrap();
+        assert_eq!((coarse.step, coarse.words), (Some(choice.step), choice.to_string()));
         assert_eq!(chooser.chosen(Goal::TargetError(0.3)), None, "no choice for another goal");
     }
 

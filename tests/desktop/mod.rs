@@ -33,7 +33,7 @@ impl Desktop {
         let folder = tempfile::tempdir().unwrap();
         let mut command = Command::new("Xvfb");
         let screen = format!("{width}x{height}x24");
-        command.args(["-displayfd", "1", "-screen", "0", &screen, "-fbdir"]).arg(folder.path());
+        command.args(["-noreset", "-displayfd", "1", "-screen", "0", &screen, "-fbdir"]).arg(folder.path());
         let server = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
         let mut server = server.unwrap_or_else(|error| panic!("Xvfb: {error}; apt-get install xvfb xdotool"));
         let mut number = String::new();
