@@ -127,6 +127,11 @@ impl Renderer {
         &self.resources.gpu
     }
 
+    /// How many pipelines it has compiled so far.
+    pub fn compiled_pipelines(&self) -> u64 {
+        self.resources.compiled_pipelines()
+    }
+
     /// From now on frames come in submissions short enough for others who share the device, and can be stopped. A
     /// stopped frame ends in [`crate::gpu::GpuError::Stopped`]; the next one computes what it has left undone.
     pub fn set_pace(&mut self, pace: Option<Pace>) {

@@ -18,6 +18,8 @@ pub struct Pipelines<P = crate::gpu::Pipeline> {
     /// For each pass, whether its text mentions a definition.
     mentioned: HashMap<&'static str, BTreeMap<String, bool>>,
     recording: u64,
+    /// How many have been compiled so far.
+    pub compiled: u64,
 }
 
 struct Kept<P> {
@@ -30,7 +32,7 @@ struct Kept<P> {
 
 impl<P> Default for Pipelines<P> {
     fn default() -> Self {
-        Self { kept: HashMap::new(), mentioned: HashMap::new(), recording: 0 }
+        Self { kept: HashMap::new(), mentioned: HashMap::new(), recording: 0, compiled: 0 }
     }
 }
 
@@ -64,6 +66,7 @@ impl<P: Clone> Pipelines<P> {
             return Ok(kept.pipeline.clone());
         }
         let pipeline = compile(&key.1)?;
+        self.compiled += 1;
         let (asked, used) = (definitions.clone(), self.recording);
         self.kept.insert(key, Kept { pipeline: pipeline.clone(), asked, used });
         Ok(pipeline)
@@ -86,6 +89,7 @@ impl<P: Clone> Pipelines<P> {
             anew.get(shaders, pass, &kept.asked, |definitions| compile(pass, definitions))?;
         }
         anew.recording = self.recording;
+        anew.compiled += self.compiled;
         Ok(anew)
     }
 

@@ -205,6 +205,11 @@ impl Resources {
         pipelines.get(shaders, pass, definitions, compile)
     }
 
+    /// How many pipelines have been compiled so far.
+    pub fn compiled_pipelines(&self) -> u64 {
+        self.pipelines.compiled
+    }
+
     /// Begins a recording: what earlier ones have compiled and not used for long is let go ([`Pipelines`]).
     pub fn begin_recording(&mut self) {
         self.pipelines.begin_recording();

@@ -78,7 +78,14 @@ pub struct Chosen {
 }
 
 impl Chosen {
-    fn new(result: Result<Choice, GoalError>) -> Self {
+    /// Where nothing is known of the device.
+    fn unknown() -> Self {
+        Self { step: None, words: "the device could not be measured for this view".to_owned(), is_met: false }
+    }
+}
+
+impl From<Result<Choice, GoalError>> for Chosen {
+    fn from(result: Result<Choice, GoalError>) -> Self {
         let words = match &result {
             Ok(choice) => choice.to_string(),
             Err(error) => error.to_string(),
@@ -118,6 +125,13 @@ impl Chooser {
         self.chosen.as_ref().filter(|(for_goal, ..)| *for_goal == goal).map(|(.., chosen)| chosen)
     }
 
+    /// The settings to show pictures with: those of the last choice for a goal of the kind, however far it was, until there is
+    /// another.
+    pub fn step(&self, goal: Goal) -> Option<LadderStep> {
+        let same_kind = |other: &Goal| std::mem::discriminant(other) == std::mem::discriminant(&goal);
+        self.chosen.as_ref().filter(|(other, ..)| same_kind(other)).and_then(|(.., chosen)| chosen.step)
+    }
+
     /// Chooses for a scene that has come to rest in a window of so many pixels. Where the device must be measured first, says
     /// for what, once.
     pub fn choose(&mut self, goal: Goal, scene: &Arc<Scene>, size: [u32; 2]) -> Option<Load> {
@@ -128,13 +142,16 @@ impl Chooser {
             return None;
         }
         let (front, traits) = (MeasuredFront::built_in(), SceneTraits::of(scene));
-        let result = match goal {
-            Goal::TargetError(target) => within_error(front, &traits, target, None),
+        let chosen: Chosen = match goal {
+            Goal::TargetError(target) => within_error(front, &traits, target, None).into(),
             Goal::BudgetMs(budget_ms) => {
                 let wanted = Load::of(scene, size);
                 match &self.measurement {
-                    Measurement::Done(load, times) if *load == wanted => within_time(front, &traits, budget_ms, times),
-                    Measurement::UnderWay(load, _) | Measurement::Failed(load) if *load == wanted => return None,
+                    Measurement::Done(load, times) if *load == wanted => {
+                        within_time(front, &traits, budget_ms, times).into()
+                    }
+                    Measurement::Failed(load) if *load == wanted => Chosen::unknown(),
+                    Measurement::UnderWay(load, _) if *load == wanted => return None,
                     _ => {
                         self.measurement = Measurement::UnderWay(wanted, Calibration::default());
                         return Some(wanted);
@@ -142,7 +159,7 @@ impl Chooser {
                 }
             }
         };
-        self.chosen = Some((goal, scene.clone(), size, Chosen::new(result)));
+        self.chosen = Some((goal, scene.clone(), size, chosen));
         None
     }
 
@@ -217,6 +234,8 @@ mod tests {
         let choice = within_error(front, &traits, 0.2, None).unwrap();
         assert_eq!((coarse.step, coarse.words), (Some(choice.step), choice.to_string()));
         assert_eq!(chooser.chosen(Goal::TargetError(0.3)), None, "no choice for another goal");
+        assert_eq!(chooser.step(Goal::TargetError(0.3)), never.step, "but its settings stay until there is one");
+        assert_eq!(chooser.step(Goal::BudgetMs(10.0)), None);
     }
 
     #[test]
@@ -241,5 +260,6 @@ mod tests {
         chooser.learn(other, Chooser::steps().next().unwrap(), None);
         assert_eq!(chooser.choose(Goal::BudgetMs(45.0), &noon, [320, 200]), None);
         assert_eq!(chooser.progress(), None);
+        assert_eq!(chooser.chosen(Goal::BudgetMs(45.0)), Some(&Chosen::unknown()));
     }
 }

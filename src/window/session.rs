@@ -120,7 +120,7 @@ impl Session {
 
     /// The settings that were chosen for what is aimed at, in numbers; those of the quality where none were.
     pub fn settings(&self) -> Settings {
-        match self.chosen().and_then(|chosen| chosen.step) {
+        match self.goal().and_then(|goal| self.chooser.step(goal)) {
             Some(step) => step.settings(),
             None => Settings { multiple_scattering: self.multiple_scattering, ..Settings::of(self.quality) },
         }

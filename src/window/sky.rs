@@ -5,7 +5,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::gpu::{Gpu, GpuImage, ImageShape, NextUse, Pace, ScreenEncoding};
+use crate::gpu::{Gpu, GpuImage, ImageShape, NextUse, Pace, ScreenEncoding, give_back_freed_memory};
 use crate::passes::RenderError;
 use crate::plan::{Outputs, Settings};
 use crate::renderer::{Rendered, Renderer, Targets, Timings};
@@ -87,7 +87,7 @@ impl Sky {
         let pace = Pace::new(PIECE);
         renderer.set_pace(Some(pace.clone()));
         let shared = Arc::new(Shared { orders: Mutex::default(), wake: Condvar::new(), pace });
-        let worker = Worker { shared: shared.clone(), renderer, images: Vec::new() };
+        let worker = Worker { shared: shared.clone(), renderer, images: Vec::new(), compiled: 0 };
         let thread = std::thread::Builder::new().name("sky".to_owned()).spawn(move || worker.work(tell));
         Ok(Self { shared, thread: thread.ok() })
     }
@@ -161,6 +161,8 @@ struct Worker {
     renderer: Renderer,
     /// Images of earlier views, to be drawn into again once nobody looks at them.
     images: Vec<GpuImage>,
+    /// Pipelines whose compilation has left nothing behind.
+    compiled: u64,
 }
 
 impl Worker {
@@ -174,6 +176,15 @@ impl Worker {
                     Err(error) => tell(News::Failed(error.to_string())),
                 },
             }
+            self.tidy();
+        }
+    }
+
+    /// Gives back what compilers have left.
+    fn tidy(&mut self) {
+        let compiled = self.renderer.compiled_pipelines();
+        if std::mem::replace(&mut self.compiled, compiled) != compiled {
+            give_back_freed_memory();
         }
     }
 

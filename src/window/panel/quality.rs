@@ -108,7 +108,7 @@ fn chosen(ui: &mut Ui, session: &Session) {
         (None, None) => ui.label("chosen when nothing moves"),
     };
     if session.chosen().is_none_or(|chosen| chosen.step.is_none()) {
-        ui.label(format!("until then: quality {}", session.quality));
+        ui.label(format!("meanwhile: quality {}", session.quality));
     }
 }
 
