@@ -6,9 +6,9 @@ use welkin_shaders::{Definitions, ShaderError};
 
 use super::ShaderSources;
 
-/// Pipelines that are kept. A picture takes ten in clear air and some thirty with everything in it, so that one can go
-/// back and forth between several qualities or scenes and nothing is compiled twice.
-pub const MOST_KEPT: usize = 64;
+/// Pipelines that are kept. A picture takes some ten in clear air and some thirty with everything in it, and a driver may keep
+/// some megabytes for each: one can go back and forth between two or three qualities of a sky and nothing is compiled twice.
+pub const MOST_KEPT: usize = 40;
 
 /// The pipelines of all passes, each by the definitions that make a difference to it. When a recording begins and there are
 /// more than [`MOST_KEPT`], those that were used longest ago are let go, but never one that the recording before has used.

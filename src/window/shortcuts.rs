@@ -57,6 +57,14 @@ pub enum Action {
     Aim(Aim),
 }
 
+impl Action {
+    /// Whether a key asks for it while a field of the panel has the focus too.
+    pub fn is_never_typed(self, code: KeyCode) -> bool {
+        let is_function_key = matches!(code, KeyCode::F1 | KeyCode::F5 | KeyCode::F11 | KeyCode::F12);
+        is_function_key || matches!(self, Self::Quit | Self::Save)
+    }
+}
+
 /// A key with what it does.
 pub struct Shortcut {
     code: KeyCode,
@@ -159,5 +167,8 @@ mod tests {
         assert_eq!(action(KeyCode::KeyZ, control), Some(Action::Undo));
         assert_eq!(action(KeyCode::KeyZ, control | ModifiersState::SHIFT), Some(Action::Redo));
         assert_eq!(action(KeyCode::KeyK, ModifiersState::empty()), None);
+        // In a field of the panel one writes letters, and saves by the same keys as elsewhere.
+        assert!(Action::Save.is_never_typed(KeyCode::KeyS) && Action::Help.is_never_typed(KeyCode::F1));
+        assert!(!Action::Truth.is_never_typed(KeyCode::KeyT) && !Action::Undo.is_never_typed(KeyCode::KeyZ));
     }
 }

@@ -185,6 +185,7 @@ impl Worker {
         let compiled = self.renderer.compiled_pipelines();
         if std::mem::replace(&mut self.compiled, compiled) != compiled {
             give_back_freed_memory();
+            tracing::debug!("{compiled} pipelines compiled; {:?}", self.renderer.gpu().population());
         }
     }
 

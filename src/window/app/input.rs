@@ -64,8 +64,7 @@ impl Open {
         let typing = taken || self.interface.context().wants_keyboard_input();
         if let Some(action) = shortcuts::action(code, self.modifiers)
             && down
-            && (!event.repeat || !typing)
-            && !typing
+            && (!typing || (action.is_never_typed(code) && !event.repeat))
         {
             self.session.asked.push(action);
             self.window.request_redraw();
