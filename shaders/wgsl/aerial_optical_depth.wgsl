@@ -6,10 +6,10 @@
 //
 // Definitions: EMISSION (the air gives off light of its own), and those of welkin::emission.
 
-#import welkin::atmosphere::extinction_at
+#import welkin::atmosphere::{extinction_at, extinction_without_tents_at}
 #import welkin::emission::source_at
 #import welkin::mapping
-#import welkin::march::{altitude_at, leg_end_m, view_ray, AirRay, LEG_COUNT}
+#import welkin::march::{altitude_at, leg_end_m, tents_between, view_ray, AirRay, LEG_COUNT}
 #import welkin::observer::observer
 
 #ifdef HALF_TABLES
@@ -30,12 +30,12 @@ struct Sum {
     emission: vec3<f32>,
 }
 
-// Extinction at a point of a panel whose middle lies elsewhere: at its end a layer may end too, so a little inside.
+// Extinction without tents at a point of a panel whose middle lies elsewhere: at its end a layer may end too, so a little inside.
 fn extinction_within(ray: AirRay, at_m: f32, middle_m: f32) -> vec3<f32> {
 #ifdef LAYERS
-    return extinction_at(altitude_at(ray, mix(at_m, middle_m, 1e-3)));
+    return extinction_without_tents_at(altitude_at(ray, mix(at_m, middle_m, 1e-3)));
 #else
-    return extinction_at(altitude_at(ray, at_m));
+    return extinction_without_tents_at(altitude_at(ray, at_m));
 #endif
 }
 
@@ -49,9 +49,12 @@ fn add_stretch(sum: ptr<function, Sum>, ray: AirRay, start_m: f32, end_m: f32) {
         let from_m = start_m + f32(i) * panel_m;
         let middle_m = from_m + 0.5 * panel_m;
         let middle_altitude_m = altitude_at(ray, middle_m);
-        let middle = extinction_at(middle_altitude_m);
+        let middle = extinction_without_tents_at(middle_altitude_m);
         let after = extinction_within(ray, from_m + panel_m, middle_m);
-        let tau = panel_m / 6.0 * (before + 4.0 * middle + after);
+        let ends_m = vec2<f32>(from_m, from_m + panel_m);
+        let altitudes_m = vec2<f32>(altitude_at(ray, ends_m.x), altitude_at(ray, ends_m.y));
+        let tents = tents_between(ray, ends_m, panel_m, altitudes_m, middle_altitude_m);
+        let tau = panel_m / 6.0 * (before + 4.0 * middle + after) + tents;
 #ifdef EMISSION
         let source = source_at(ray, middle_m, middle_altitude_m);
         (*sum).emission += panel_m * exp(-(*sum).tau - 0.5 * tau) * source;

@@ -7,10 +7,10 @@
 // Definitions: SLICE_COUNT.
 
 #import welkin::aerial::{lit_share, lit_way, opacity_ratio, LitWay}
-#import welkin::atmosphere::{atmosphere, densities, extinction_at, SCATTERER_COUNT}
+#import welkin::atmosphere::{atmosphere, densities, extinction_without_tents_at, SCATTERER_COUNT}
 #import welkin::mapping
 #import welkin::march::{
-    altitude_at, cut_at_shadow, leg_end_m, local_directions, view_ray, AirRay, LEG_COUNT, Node
+    altitude_at, cut_at_shadow, leg_end_m, local_directions, tents_between, view_ray, AirRay, LEG_COUNT, Node
 }
 #import welkin::observer::{light_mu_s, observer, LIGHT_COUNT}
 #import welkin::sky::{multiple_scattering_table, LAYER_COUNT, MULTIPLE_LAYER, SINGLE_LAYER}
@@ -30,6 +30,7 @@ const NODES: array<f32, 2> = array<f32, 2>(0.21132486540518712, 0.78867513459481
 // Where a march stands, and what it has gathered: light as in the layers of the sky view.
 struct March {
     distance_m: f32,
+    // Without tents.
     extinction_per_m: vec3<f32>,
     tau: vec3<f32>,
     light: array<vec3<f32>, LAYER_COUNT>,
@@ -59,12 +60,12 @@ fn sources(ray: AirRay, node: Node, dark: bool, kind: u32) -> array<vec3<f32>, L
     return source;
 }
 
-// Extinction at a point of a stretch whose middle lies elsewhere: at its end a layer may end too, so a little inside.
+// Extinction without tents at a point of a stretch whose middle lies elsewhere: at its end a layer may end too, so a little inside.
 fn extinction_within(ray: AirRay, at_m: f32, middle_m: f32) -> vec3<f32> {
 #ifdef LAYERS
-    return extinction_at(altitude_at(ray, mix(at_m, middle_m, 1e-3)));
+    return extinction_without_tents_at(altitude_at(ray, mix(at_m, middle_m, 1e-3)));
 #else
-    return extinction_at(altitude_at(ray, at_m));
+    return extinction_without_tents_at(altitude_at(ray, at_m));
 #endif
 }
 
@@ -72,10 +73,14 @@ fn extinction_within(ray: AirRay, at_m: f32, middle_m: f32) -> vec3<f32> {
 fn move_to(march: ptr<function, March>, ray: AirRay, distance_m: f32) {
     let step_m = distance_m - (*march).distance_m;
     let middle_m = distance_m - 0.5 * step_m;
-    let middle = extinction_at(altitude_at(ray, middle_m));
+    let middle_altitude_m = altitude_at(ray, middle_m);
+    let middle = extinction_without_tents_at(middle_altitude_m);
     let end = extinction_within(ray, distance_m, middle_m);
     (*march).tau += step_m / 6.0 * ((*march).extinction_per_m + 4.0 * middle + end);
     (*march).extinction_per_m = end;
+    let ends_m = vec2<f32>((*march).distance_m, distance_m);
+    let altitudes_m = vec2<f32>(altitude_at(ray, ends_m.x), altitude_at(ray, ends_m.y));
+    (*march).tau += tents_between(ray, ends_m, step_m, altitudes_m, middle_altitude_m);
     (*march).distance_m = distance_m;
 }
 
@@ -164,7 +169,7 @@ fn fill(place: vec2<u32>, ray: AirRay, kind: u32) {
         slices = way.slices;
     }
     var march: March;
-    march.extinction_per_m = extinction_at(ray.altitude_m);
+    march.extinction_per_m = extinction_without_tents_at(ray.altitude_m);
     var light_before: array<array<vec3<f32>, LAYER_COUNT>, SLICE_COUNT>;
     var expected: array<vec3<f32>, SLICE_COUNT>;
     var tau_before: array<vec3<f32>, SLICE_COUNT>;

@@ -31,6 +31,9 @@ const MAX_LOBES: u32 = 2u;
 const PROFILE_GROUP_COUNT: u32 = #{PROFILE_GROUP_COUNT}u;
 const SCATTERING_LAYER_COUNT: u32 = SCATTERER_COUNT - SCATTERING_TENT_END;
 const LAYER_COUNT: u32 = SCATTERING_LAYER_COUNT + CONSTITUENT_COUNT - ABSORBING_TENT_END;
+const SCATTERING_TENT_COUNT: u32 = SCATTERING_TENT_END - SCATTERING_EXPONENTIAL_END;
+const TENT_COUNT: u32 = SCATTERING_TENT_COUNT + ABSORBING_TENT_END - ABSORBING_EXPONENTIAL_END;
+const TENT_SLOTS: u32 = max(TENT_COUNT, 1u);
 
 struct Constituent {
     scattering_per_m: vec3<f32>,
@@ -127,12 +130,34 @@ fn layer_bounds_m(layer: u32) -> vec2<f32> {
     return vec2<f32>(atmosphere.constituents[i].profile_a, atmosphere.constituents[i].profile_b);
 }
 
+// The constituent of a tent, counted from 0.
+fn constituent_of_tent(tent: u32) -> u32 {
+    if tent < SCATTERING_TENT_COUNT {
+        return SCATTERING_EXPONENTIAL_END + tent;
+    }
+    return ABSORBING_EXPONENTIAL_END + tent - SCATTERING_TENT_COUNT;
+}
+
 // c at an altitude, 1/m.
 fn extinction_at(altitude_m: f32) -> vec3<f32> {
     let density = densities(altitude_m);
     var extinction = vec3<f32>(0.0);
     for (var i = 0u; i < CONSTITUENT_COUNT; i++) {
         extinction += density[i] * atmosphere.constituents[i].extinction_per_m;
+    }
+    return extinction;
+}
+
+// The same without tents, whose kinks a quadrature would have to find: welkin::tent has their optical depth.
+fn extinction_without_tents_at(altitude_m: f32) -> vec3<f32> {
+    let density = densities(altitude_m);
+    var extinction = vec3<f32>(0.0);
+    for (var i = 0u; i < CONSTITUENT_COUNT; i++) {
+        let scattering_tent = i >= SCATTERING_EXPONENTIAL_END && i < SCATTERING_TENT_END;
+        let absorbing_tent = i >= ABSORBING_EXPONENTIAL_END && i < ABSORBING_TENT_END;
+        if !scattering_tent && !absorbing_tent {
+            extinction += density[i] * atmosphere.constituents[i].extinction_per_m;
+        }
     }
     return extinction;
 }

@@ -1,7 +1,7 @@
 // Pass: linear radiance of every pixel, interpolated between the corners of its cell of the lattice with the bend that the
 // centres show; and a list of the cells in which that is not enough, whose pixels `compose` evaluates one by one.
 //
-// Definitions: LATTICE_PPM, millionths by which interpolation may err; WHOLE_CELLS (an invocation fills all of a cell and
+// Definitions: LATTICE_PPM, millionths by which interpolation may err, at most; WHOLE_CELLS (an invocation fills all of a cell and
 // not a column: fewer reads of the lattice, for devices of few invocations); LATTICE_TRANSMITTANCE (transmittance matters).
 
 #import welkin::camera::{view_direction, view_through}
@@ -51,37 +51,77 @@ fn corners_of(cell: vec2<u32>) -> Corners {
 struct Bend {
     along_row: vec3<f32>,
     along_column: vec3<f32>,
-    // Whether what is left is below the tolerance.
-    is_slight: bool,
 }
 
-// What the parabola leaves over what it mends: of third differences, a cell's side from the horizon, half at most. A kink of
-// the tables between two nodes may leave all of it, twice the tolerance.
-const RESIDUE: f32 = 0.5;
+// Second differences of the light of three nodes in a row, as a parabola's height over the chord between two that are as
+// far apart as these.
+fn height_of(view: vec3<f32>, before: SmoothSky, middle: SmoothSky, after: SmoothSky) -> vec3<f32> {
+    let outer = clear_radiance(view, before) + clear_radiance(view, after);
+    return 0.125 * (2.0 * clear_radiance(view, middle) - outer);
+}
 
-fn bend_of(cell: vec2<u32>, corners: Corners) -> Bend {
-    let view = view_through(f32(CELL) * (vec2<f32>(cell) + 0.5));
-    let centre = centre_node(sky_lattice, cell);
-    // The picture's first column has no neighbour to its left; its last has one that lies outside the picture.
-    let middle = vec2<u32>(max(cell.x, 1u), cell.y);
-    let left = centre_node(sky_lattice, middle - vec2<u32>(1u, 0u));
-    let right = centre_node(sky_lattice, middle + vec2<u32>(1u, 0u));
-    let between = centre_node(sky_lattice, middle);
+// The cell in whose line neighbours on both sides exist: the picture's first has none before it, its last has one that
+// lies outside the picture.
+fn with_neighbours(cell: vec2<u32>) -> vec2<u32> {
+    return max(cell, vec2<u32>(1u));
+}
+
+fn bend_of(view: vec3<f32>, cell: vec2<u32>, corners: Corners) -> Bend {
+    let middle = vec2<u32>(with_neighbours(cell).x, cell.y);
     let mean = mixed(
         mixed(corners.upper_left, corners.lower_left, 0.5), mixed(corners.upper_right, corners.lower_right, 0.5), 0.5
     );
-    let radiance = clear_radiance(view, centre);
-    let outer = clear_radiance(view, left) + clear_radiance(view, right);
     var bend: Bend;
-    bend.along_row = 0.125 * (2.0 * clear_radiance(view, between) - outer);
-    bend.along_column = radiance - clear_radiance(view, mean) - bend.along_row;
-    bend.is_slight = all(RESIDUE * (abs(bend.along_row) + abs(bend.along_column)) <= TOLERANCE * radiance);
-#ifdef LATTICE_TRANSMITTANCE
-    let row = 0.125 * (left.transmittance + right.transmittance - 2.0 * between.transmittance);
-    let both = mean.transmittance - centre.transmittance;
-    bend.is_slight = bend.is_slight && all(abs(row) + abs(both - row) <= TOLERANCE * centre.transmittance);
-#endif
+    bend.along_row = height_of(
+        view,
+        centre_node(sky_lattice, middle - vec2<u32>(1u, 0u)),
+        centre_node(sky_lattice, middle),
+        centre_node(sky_lattice, middle + vec2<u32>(1u, 0u)),
+    );
+    let centre = centre_node(sky_lattice, cell);
+    bend.along_column = clear_radiance(view, centre) - clear_radiance(view, mean) - bend.along_row;
     return bend;
+}
+
+// What the parabola leaves over its own height, at most. Where light is smooth that is of third differences, a half in the
+// first cells above the horizon. A kink, as tables have from row to row, leaves more: wherever it lies in a cell, up to 1.26
+// of the height that three centres in a row show, and up to 1.11 of the larger of that and the cell's own.
+const RESIDUE: f32 = 1.26;
+
+// Whether the parabola leaves less than the tolerance.
+fn is_slight(view: vec3<f32>, cell: vec2<u32>, bend: Bend) -> bool {
+    let middle = vec2<u32>(cell.x, with_neighbours(cell).y);
+    let above = middle - vec2<u32>(0u, 1u);
+    let below = middle + vec2<u32>(0u, 1u);
+    let kind = cell_kind(sky_lattice, cell);
+    if any(vec2<f32>(cell_kind(sky_lattice, above), cell_kind(sky_lattice, below)) != vec2<f32>(kind)) {
+        return false;
+    }
+    let column = height_of(
+        view, centre_node(sky_lattice, above), centre_node(sky_lattice, middle), centre_node(sky_lattice, below)
+    );
+    let height = abs(bend.along_row) + max(abs(bend.along_column), abs(column));
+    let centre = centre_node(sky_lattice, cell);
+    return all(RESIDUE * height <= TOLERANCE * clear_radiance(view, centre));
+}
+
+// The same of transmittance, which has no parabola: a kink leaves up to twice the height that the centre shows.
+fn transmittance_is_straight(cell: vec2<u32>, corners: Corners) -> bool {
+#ifdef LATTICE_TRANSMITTANCE
+    let middle = vec2<u32>(with_neighbours(cell).x, cell.y);
+    let left = centre_node(sky_lattice, middle - vec2<u32>(1u, 0u)).transmittance;
+    let right = centre_node(sky_lattice, middle + vec2<u32>(1u, 0u)).transmittance;
+    let along_row = 0.125 * (2.0 * centre_node(sky_lattice, middle).transmittance - left - right);
+    let mean = 0.25 * (
+        corners.upper_left.transmittance + corners.lower_left.transmittance + corners.upper_right.transmittance
+            + corners.lower_right.transmittance
+    );
+    let centre = centre_node(sky_lattice, cell).transmittance;
+    let height = abs(along_row) + abs(centre - mean - along_row);
+    return all(2.0 * height <= TOLERANCE * centre);
+#else
+    return true;
+#endif
 }
 
 fn list(cell: vec2<u32>) {
@@ -115,10 +155,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let cell = first / CELL;
     let corners = corners_of(cell);
-    let bend = bend_of(cell, corners);
+    let middle_view = view_through(f32(CELL) * (vec2<f32>(cell) + 0.5));
+    let bend = bend_of(middle_view, cell, corners);
     if first.x % CELL == 0u {
         let mixes = cell_kind(sky_lattice, cell) == MIXED_CELL || holds_surface(cell, size);
-        if mixes || !bend.is_slight {
+        let slight = is_slight(middle_view, cell, bend) && transmittance_is_straight(cell, corners);
+        if mixes || !slight {
             list(cell);
         }
     }

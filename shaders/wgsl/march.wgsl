@@ -4,7 +4,8 @@
 // A ray is cut where its integrand has a kink or a jump: at its tangent point, where it crosses the planet's shadow, and
 // at the bounds of layers. Each of the legs, at most four where there is no layer, is integrated by Gauss-Legendre in v,
 // where distance grows with v² from the leg's low end, so that nodes crowd where the air is dense. Optical depth between
-// nodes is Simpson's rule in v, which reuses the extinction at both nodes. Measured in docs/accuracy.md.
+// nodes is Simpson's rule in v, which reuses the extinction at both nodes; that of tents, which have kinks, is in closed
+// form (welkin::tent). Measured in docs/accuracy.md.
 //
 //   for (var i = 0u; i < LEG_COUNT; i++) {
 //       var leg = leg_of(ray, i);
@@ -16,10 +17,13 @@
 //       leg_finish(&leg, ray, &optical_depth);
 //   }
 //
-// Definitions: NODE_COUNT, nodes per leg, and FINE_PANELS, enough for a profile's kinks; LAYERS (some constituent's density is a layer).
+// Definitions: NODE_COUNT, nodes per leg, and FINE_PANELS; LAYERS (some constituent's density is a layer).
 
-#import welkin::atmosphere::{atmosphere, extinction_at, layer_bounds_m, LAYER_COUNT}
+#import welkin::atmosphere::{
+    atmosphere, extinction_without_tents_at, layer_bounds_m, LAYER_COUNT, TENT_SLOTS
+}
 #import welkin::geometry
+#import welkin::tent::{distances_of_kinks_m, optical_depth_of_tents, Stretch}
 
 const NODE_COUNT: u32 = #{NODE_COUNT}u;
 // A ray crosses each bound of a layer twice at most.
@@ -51,6 +55,8 @@ struct AirRay {
     shadow_m: vec2<f32>,
     // Ends of the legs in ascending order, those at bounds of layers left out.
     leg_ends_m: vec4<f32>,
+    // Of the tents' kinks from the tangent point, on either side: see welkin::tent.
+    kink_distances_m: array<vec3<f32>, TENT_SLOTS>,
 }
 
 struct Leg {
@@ -64,8 +70,9 @@ struct Leg {
     floor_m: f32,
     ceiling_m: f32,
 #endif
-    // Where the quadrature stands: v, and extinction times v there.
+    // Where the quadrature stands: v, altitude, and extinction without tents times v there.
     v: f32,
+    altitude_m: f32,
     weighted_extinction_per_m: vec3<f32>,
 }
 
@@ -93,6 +100,7 @@ fn air_ray(altitude_m: f32, mu: f32, mu_s: f32, nu: f32, hits_ground: bool) -> A
     ray.tangent_m = -(radius_m + altitude_m) * mu;
     ray.shadow_m = vec2<f32>(1.0, 0.0);
     ray.leg_ends_m = sorted_leg_ends_m(ray);
+    ray.kink_distances_m = distances_of_kinks_m(altitude_m, mu);
     return ray;
 }
 
@@ -202,9 +210,10 @@ fn leg_of(ray: AirRay, index: u32) -> Leg {
         }
     }
 #endif
+    leg.altitude_m = leg_altitude_m(leg, ray, leg.start_m);
     // Ascending legs start at v = 0, where the weight vanishes.
     if leg.descending {
-        leg.weighted_extinction_per_m = extinction_at(leg_altitude_m(leg, ray, leg.start_m));
+        leg.weighted_extinction_per_m = extinction_without_tents_at(leg.altitude_m);
     }
     return leg;
 }
@@ -234,15 +243,30 @@ fn leg_distance_m(leg: Leg, v: f32) -> f32 {
     return leg.start_m + select(along_m, leg.length_m - along_m, leg.descending);
 }
 
+// Optical depth of the tents between two points that no lowest point lies between.
+fn tents_between(ray: AirRay, distances_m: vec2<f32>, length_m: f32, altitudes_m: vec2<f32>, middle_m: f32) -> vec3<f32> {
+    let from_lowest_m = abs(distances_m - ray.tangent_m);
+    let r_middle = atmosphere.radius_m + middle_m;
+    let sine = (atmosphere.radius_m + ray.altitude_m) / r_middle * sqrt(max(1.0 - ray.mu * ray.mu, 0.0));
+    let high_m = max(from_lowest_m.x, from_lowest_m.y);
+    let stretch = Stretch(length_m, high_m, altitudes_m, sine * sine / r_middle);
+    return optical_depth_of_tents(stretch, ray.kink_distances_m);
+}
+
 // Moves to v and adds the optical depth of the way there.
 fn leg_move(leg: ptr<function, Leg>, ray: AirRay, v: f32, altitude_m: f32, optical_depth: ptr<function, vec3<f32>>) {
     let v_middle = 0.5 * (leg.v + v);
-    let middle = extinction_at(leg_altitude_m(*leg, ray, leg_distance_m(*leg, v_middle))) * v_middle;
-    let end = extinction_at(altitude_m) * v;
+    let middle_m = leg_altitude_m(*leg, ray, leg_distance_m(*leg, v_middle));
+    let middle = extinction_without_tents_at(middle_m) * v_middle;
+    let end = extinction_without_tents_at(altitude_m) * v;
     // dt = 2 length v dv, by Simpson's rule.
     let step = 2.0 * leg.length_m * abs(v - leg.v) / 6.0;
     *optical_depth += step * (leg.weighted_extinction_per_m + 4.0 * middle + end);
+    let distances_m = vec2<f32>(leg_distance_m(*leg, leg.v), leg_distance_m(*leg, v));
+    let way_m = 2.0 * leg.length_m * abs(v - leg.v) * v_middle;
+    *optical_depth += tents_between(ray, distances_m, way_m, vec2<f32>(leg.altitude_m, altitude_m), middle_m);
     leg.v = v;
+    leg.altitude_m = altitude_m;
     leg.weighted_extinction_per_m = end;
 }
 

@@ -2,8 +2,8 @@
 // The sky in one direction, from the sky-view table, and the ground behind it.
 //
 // The table's layers, for each light and each half of the view sphere: the logarithms of multiply scattered radiance,
-// then of each scatterer's single scattering without the phase function. All for unit irradiance of the light, and over
-// the length of air along the ray.
+// then of each scatterer's single scattering without the phase function, over the share of air that is lit
+// (welkin::shade). All for unit irradiance of the light, and over the length of air along the ray.
 //
 // Definitions: AIR (there is any), LIT (a directional light shines on air that scatters), GROUND (light from the ground
 // belongs in the picture), MULTIPLE_SCATTERING, EMISSION (the air gives off light of its own).
@@ -13,6 +13,7 @@
 #import welkin::mapping
 #import welkin::march::{air_length_m, ground_mu_s, view_ray}
 #import welkin::observer::{light_mu_s, observer}
+#import welkin::shade::ln_lit_share
 #import welkin::tables::{diffuse_ground_irradiance, sample_exactly, table_sampler}
 
 @group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
@@ -83,7 +84,16 @@ fn sky_view(light: u32, layer: u32, direction: SkyDirection) -> vec3<f32> {
     );
     let uv = mapping::inset(unit, vec2<f32>(textureDimensions(sky_view_table)));
     let first = layer_of(light, direction.below_horizon);
-    return exp(textureSampleLevel(sky_view_table, table_sampler, uv, first + layer, 0.0).rgb - LN_SCALE);
+    var ln_scale = -LN_SCALE;
+#ifdef SHADE
+    if layer >= SINGLE_LAYER {
+        let ray = view_ray(
+            observer.altitude_m, cos(direction.zenith_rad), light_mu_s(light), direction.nu, direction.below_horizon
+        );
+        ln_scale += ln_lit_share(light, ray, layer - SINGLE_LAYER);
+    }
+#endif
+    return exp(textureSampleLevel(sky_view_table, table_sampler, uv, first + layer, 0.0).rgb + ln_scale);
 }
 
 // What clouds leave of light that comes straight from a light, and of light that air or clouds have scattered before.

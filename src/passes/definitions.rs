@@ -92,6 +92,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("AIR", facts.has_air()),
         ("LIT", facts.is_lit()),
         ("EMISSION", !facts.emitters.is_empty()),
+        ("SHADE", facts.is_in_shadow()),
         ("DISC", facts.lights.iter().any(|light| facts.is_wide(light))),
         ("SPHERE", facts.has_sphere()),
         ("GROUND", facts.orders == Orders::All),

@@ -19,7 +19,8 @@ pub const PASS: Pass = Pass {
             let discs: Vec<_> = facts.lights.iter().map(|light| disc(light)).collect();
             let settings = &facts.settings;
             let sampling = (settings.nodes_per_leg, settings.quadrature, settings.sky_view_size);
-            Fingerprint::of(&(discs, facts.observer_altitude_m(), sampling)).following(elevations(facts))
+            let observer = (facts.observer_altitude_m(), facts.is_in_shadow());
+            Fingerprint::of(&(discs, observer, sampling)).following(elevations(facts))
         },
         bytes: |facts| shape(facts).texels() * table_format(facts).texel_bytes(),
     },

@@ -3,7 +3,7 @@
 use welkin_lut::cloud::CloudLayer;
 use welkin_lut::mapping::SkyViewMapping;
 use welkin_lut::volume::Volume;
-use welkin_lut::{Constituent, DensityProfile, PhaseFunction};
+use welkin_lut::{Constituent, DensityProfile, PhaseFunction, geometry};
 
 use super::disc::is_wide;
 use super::faint::{Reach, reach};
@@ -287,6 +287,12 @@ impl<'a> Facts<'a> {
     /// Whether a light's disc is so wide that pixels change when light is averaged over it.
     pub fn is_wide(&self, light: &DirectionalLight) -> bool {
         is_wide(light, &self.scene.planet, self.observer_altitude_m(), &self.settings.skipping)
+    }
+
+    /// Whether the observer stands in the planet's shadow from some light.
+    pub fn is_in_shadow(&self) -> bool {
+        let horizon_mu = geometry::horizon_mu(self.scene.planet.radius_m, self.observer_altitude_m());
+        self.lights.iter().any(|light| light.direction.elevation_rad.sin() < horizon_mu)
     }
 
     /// Degrees of spherical harmonics that the field keeps: one where it counts as isotropic.

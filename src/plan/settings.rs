@@ -168,9 +168,8 @@ pub struct Settings {
     pub sky_view_size: [u32; 2],
     /// Froxels, each half of the view sphere: (azimuth, elevation, distance).
     pub froxel_size: [u32; 3],
-    /// By how much pixels may differ from what they would be if each were evaluated for itself, relative; twice that
-    /// where the tables have a kink. Those between the directions of a lattice are interpolated where second differences
-    /// promise it. 0 evaluates every pixel.
+    /// By how much pixels may differ at most from what they would be if each were evaluated for itself, relative. Those
+    /// between the directions of a lattice are interpolated where second differences promise it. 0 evaluates every pixel.
     pub lattice_tolerance: f64,
     /// Clouds.
     pub clouds: CloudSettings,
@@ -202,7 +201,7 @@ impl Settings {
                 source_orders: 4,
                 sky_view_size: [32, 48],
                 froxel_size: [8, 16, 16],
-                lattice_tolerance: 2e-3,
+                lattice_tolerance: 4e-3,
                 clouds: CloudSettings::of(quality),
                 volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,
@@ -225,7 +224,7 @@ impl Settings {
                 source_orders: 4,
                 sky_view_size: [48, 96],
                 froxel_size: [12, 24, 24],
-                lattice_tolerance: 1e-3,
+                lattice_tolerance: 2e-3,
                 clouds: CloudSettings::of(quality),
                 volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,
@@ -248,7 +247,7 @@ impl Settings {
                 source_orders: 5,
                 sky_view_size: [80, 144],
                 froxel_size: [16, 48, 32],
-                lattice_tolerance: 4e-4,
+                lattice_tolerance: 8e-4,
                 clouds: CloudSettings::of(quality),
                 volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,
@@ -271,7 +270,7 @@ impl Settings {
                 source_orders: 6,
                 sky_view_size: [96, 192],
                 froxel_size: [24, 64, 48],
-                lattice_tolerance: 2e-4,
+                lattice_tolerance: 4e-4,
                 clouds: CloudSettings::of(quality),
                 volumes: VolumeSettings::of(quality),
                 skipping: Skipping::USUAL,

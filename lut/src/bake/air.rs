@@ -85,9 +85,21 @@ impl Air {
         self.scatterers().iter().map(|c| c.phase.lobes()).collect()
     }
 
-    pub(super) fn extinction_per_m(&self, altitude_m: f64) -> Bands {
+    /// Constituents whose density is a tent: altitude of its centre, half its width, m, and extinction at density 1.
+    pub(super) fn tents(&self) -> impl Iterator<Item = (f64, f64, Bands)> {
+        self.constituents.iter().filter_map(|constituent| match constituent.profile {
+            DensityProfile::Tent { centre_m, half_width_m } => {
+                Some((centre_m, half_width_m, constituent.extinction_per_m()))
+            }
+            _ => None,
+        })
+    }
+
+    /// Extinction of all but the tents.
+    pub(super) fn extinction_without_tents_per_m(&self, altitude_m: f64) -> Bands {
         let mut sum = [0.0; BAND_COUNT];
-        for constituent in &self.constituents {
+        let is_smooth = |c: &&Constituent| !matches!(c.profile, DensityProfile::Tent { .. });
+        for constituent in self.constituents.iter().filter(is_smooth) {
             let density = constituent.profile.density(altitude_m);
             for (sum, c) in sum.iter_mut().zip(constituent.extinction_per_m()) {
                 *sum += c * density;

@@ -10,6 +10,7 @@ mod light;
 mod ray;
 mod scattering;
 mod settings;
+mod tent;
 
 pub use air::{Air, AirError, MAX_SCATTERERS};
 pub use settings::{BakeSettings, Directions, ScatteringSize};

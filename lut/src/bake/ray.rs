@@ -1,15 +1,17 @@
 //! The quadrature along a ray through the air: as in the shaders' `march.wgsl`, in f64.
 //!
 //! A ray is cut at its tangent point and where it crosses the planet's shadow. Each leg is Gauss-Legendre in v, where
-//! distance grows with v² from the leg's low end; optical depth between nodes is Simpson's rule in v.
+//! distance grows with v² from the leg's low end; optical depth between nodes is Simpson's rule in v, that of tents in
+//! closed form.
 
 use crate::geometry::{altitude_along, distance_to_shell_from_below, grazing_distance_m, shadow_interval_m};
 use crate::quadrature::GaussNode;
 use crate::{BAND_COUNT, Bands};
 
 use super::Air;
+use super::tent::{Stretch, optical_depth_of_tents};
 
-/// Panels of Simpson's rule on each leg where only optical depth is asked for: enough for a profile's kinks.
+/// Panels of Simpson's rule on each leg where only optical depth is asked for.
 const FINE_PANELS: u32 = 64;
 
 /// A ray from a point in the air until it leaves the air or meets the ground.
@@ -46,6 +48,8 @@ struct Leg {
     length_m: f64,
     descending: bool,
     v: f64,
+    altitude_m: f64,
+    /// Without tents, times v.
     weighted_extinction_per_m: Bands,
 }
 
@@ -135,26 +139,37 @@ impl AirRay {
             return None;
         }
         let descending = start_m + 0.5 * length_m < self.tangent_m;
+        let altitude_m = self.altitude_at(air, start_m);
         // Ascending legs start at v = 0, where the weight vanishes.
         let (v, weighted_extinction_per_m) = match descending {
-            true => (1.0, air.extinction_per_m(self.altitude_at(air, start_m))),
+            true => (1.0, air.extinction_without_tents_per_m(altitude_m)),
             false => (0.0, [0.0; BAND_COUNT]),
         };
-        Some(Leg { start_m, length_m, descending, v, weighted_extinction_per_m })
+        Some(Leg { start_m, length_m, descending, v, altitude_m, weighted_extinction_per_m })
     }
 
     fn advance(&self, air: &Air, leg: &mut Leg, v: f64, optical_depth: &mut Bands) {
         let v_middle = 0.5 * (leg.v + v);
-        let middle = air.extinction_per_m(self.altitude_at(air, leg.distance_m(v_middle)));
-        let end = air.extinction_per_m(self.altitude_at(air, leg.distance_m(v)));
+        let middle_m = self.altitude_at(air, leg.distance_m(v_middle));
+        let altitude_m = self.altitude_at(air, leg.distance_m(v));
+        let middle = air.extinction_without_tents_per_m(middle_m);
+        let end = air.extinction_without_tents_per_m(altitude_m);
+        let stretch = Stretch {
+            length_m: 2.0 * leg.length_m * (v - leg.v).abs() * v_middle,
+            distances_m: [leg.v, v].map(|v| (leg.distance_m(v) - self.tangent_m).abs()),
+            altitudes_m: [leg.altitude_m, middle_m, altitude_m],
+        };
+        let tents = optical_depth_of_tents(air, self.altitude_m, self.mu, &stretch);
         // dt = 2 length v dv, by Simpson's rule.
         let step = 2.0 * leg.length_m * (v - leg.v).abs() / 6.0;
         for band in 0..BAND_COUNT {
             let end = end[band] * v;
-            optical_depth[band] += step * (leg.weighted_extinction_per_m[band] + 4.0 * middle[band] * v_middle + end);
+            let simpson = step * (leg.weighted_extinction_per_m[band] + 4.0 * middle[band] * v_middle + end);
+            optical_depth[band] += simpson + tents[band];
             leg.weighted_extinction_per_m[band] = end;
         }
         leg.v = v;
+        leg.altitude_m = altitude_m;
     }
 
     /// Cosines of the zenith angles of ray and light, and of the azimuth between them, in a point's own frame.
