@@ -42,11 +42,21 @@ pub struct Exit {
 impl Slab {
     /// Diffuse radiance for a beam of irradiance 1 on a plane normal to it, 1/sr, from as many walks as bring one
     /// standard error below `relative_error` of it, within the bound of [`Slab::fluxes_to`].
+    ///
+    /// A round decides how many walks the next one has and is thrown away. The first may miss the rare walks that bring
+    /// most of the light and expect too few; a result that is not good enough is taken for such a round, once.
     pub fn radiance_to(&self, exit: &Exit, relative_error: f64, seed: u64) -> Measured {
         let seen = Seen::new(self, exit);
+        let excess = |m: &Measured| if m.value > 0.0 { m.standard_error / (relative_error * m.value) } else { 0.0 };
         let (pilot, steps) = seen.measure(PILOT_WALKS, !seed);
-        let excess = if pilot.value > 0.0 { pilot.standard_error / (relative_error * pilot.value) } else { 0.0 };
-        seen.measure(count(excess, steps), seed).0
+        let walks = count(excess(&pilot), steps);
+        let (measured, steps) = seen.measure(walks, seed);
+        if excess(&measured) <= 1.0 {
+            return measured;
+        }
+        // As if the first round had had so much larger an error.
+        let share = (walks as f64 / PILOT_WALKS as f64).sqrt();
+        seen.measure(count(excess(&measured) * share, steps), !seed.rotate_left(1)).0
     }
 }
 
