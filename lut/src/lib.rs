@@ -13,6 +13,7 @@ mod bands;
 pub mod cloud;
 pub mod geometry;
 pub mod height_field;
+pub mod lamp_field;
 pub mod mapping;
 mod medium;
 pub mod pack;
