@@ -54,7 +54,7 @@ enum Task {
 
 /// Milliseconds of the passes of fog, volumes and local lights.
 fn of_media(rendered: &Rendered) -> f64 {
-    let ours = ["volume_light", "local_clusters", "local_media"];
+    let ours = ["volume_light", "local_clusters", "lamp_froxels", "local_media"];
     ours.iter().filter_map(|name| rendered.timings.milliseconds.get(*name)).sum()
 }
 

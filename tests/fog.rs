@@ -14,7 +14,9 @@ use welkin::renderer::{Rendered, Renderer};
 use welkin::scene::Scene;
 
 const CAPTURE: Outputs = Outputs { capture: true, picture: false };
-const PASSES: [&str; 3] = ["volume_light", "local_clusters", "local_media"];
+/// One in so many pixels is compared where lamps are many.
+const SPARSE: usize = 37;
+const PASSES: [&str; 4] = ["volume_light", "local_clusters", "lamp_froxels", "local_media"];
 
 /// Empty space over black ground, without light, and what is said.
 fn dark(text: &str) -> Scene {
@@ -117,10 +119,26 @@ fn a_scene_without_fog_volumes_and_lamps_runs_nothing_of_theirs_and_keeps_no_byt
         [[light.point]]\nname = \"off\"\nposition_m = [0, 9, 9]\nintensity = 0\n";
     for scene in [dark(""), dark(nothing)] {
         let plan = Renderer::plan(&scene, low(), CAPTURE).unwrap();
-        assert_eq!(of_media(&plan), [(Decision::Skip, 0); 3]);
+        assert_eq!(of_media(&plan), [(Decision::Skip, 0); PASSES.len()]);
+        assert!(plan.passes.iter().all(|pass| !PASSES.contains(&pass.name) || pass.reason.contains("no fog")));
     }
-    let plan = Renderer::plan(&dark(FOG), low(), CAPTURE).unwrap();
-    assert!(of_media(&plan).iter().all(|(decision, bytes)| *decision == Decision::Run && *bytes > 0));
+    let runs = |text: &str| -> Vec<bool> {
+        let media = of_media(&Renderer::plan(&dark(text), low(), CAPTURE).unwrap());
+        media.iter().map(|&(decision, bytes)| decision == Decision::Run && bytes > 0).collect()
+    };
+    // Froxels of lamps' light are for many of them.
+    assert_eq!(runs(FOG), [true, true, false, true]);
+    assert_eq!(runs(&format!("{FOG}{}", row_of_lamps(12, 1.0))), [true; PASSES.len()]);
+}
+
+/// So many lamps in two rows along the view, of different brightness.
+fn row_of_lamps(count: usize, intensity: f64) -> String {
+    let lamp = |i: usize| {
+        let (side, north) = (if i % 2 == 0 { -7 } else { 6 }, 18 + 9 * i);
+        let brightness = intensity * (1.0 + (i % 3) as f64);
+        format!("[[light.point]]\nname = \"{i}\"\nposition_m = [{side}, {north}, 5]\nintensity = {brightness}\n")
+    };
+    (0..count).map(lamp).collect()
 }
 
 /// Root mean square of the relative difference over pixels that see more than a thousandth of the brightest.
@@ -130,6 +148,30 @@ fn difference(frame: &Frame, exact: &[f64]) -> f64 {
     let squares: Vec<f64> = pairs.map(|(found, exact)| (f64::from(found[1]) / exact - 1.0).powi(2)).collect();
     assert!(squares.len() > 100, "only {} pixels see light", squares.len());
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+#[test]
+fn light_of_many_lamps_that_comes_through_froxels_is_what_quadrature_finds() {
+    let fog = "[[fog]]\nextinction_per_m = 0.012\nprofile.layer.top_m = 40\n";
+    let scene = |intensity: f64| {
+        let mut scene = dark(&format!("{fog}{}", row_of_lamps(24, intensity)));
+        (scene.camera.width, scene.camera.height) = (160, 96);
+        scene
+    };
+    let mut single = Settings::of(Quality::High);
+    single.clouds.scattering = CloudScattering::Single;
+    let mut frame = render(&[(scene(1.0), single)]).remove(0).frame;
+    frame.radiance = frame.radiance.into_iter().step_by(SPARSE).collect();
+    let exact = |scene: &Scene| -> Vec<f64> {
+        let world = World::from_scene(scene);
+        let seen = |(eye, view): (DVec3, DVec3)| first_order(&world, eye, view, 1e-2).total()[1];
+        views(scene).into_iter().step_by(SPARSE).map(seen).collect()
+    };
+    // Stated: 5 per cent, as the light of far lamps is interpolated.
+    let rms = difference(&frame, &exact(&scene(1.0)));
+    assert!(rms < 0.05, "{rms}");
+    // Negative control: lamps a tenth brighter are told from them.
+    assert!(difference(&frame, &exact(&scene(1.1))) > 0.05);
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn plan(scene: &Scene) -> Plan {
 
 /// The passes of air that gives off light of its own, of what stands before the camera, of local media, of pictures large
 /// enough to be interpolated, and of more wavelengths than three.
-const OF_OTHER_SCENES: [&str; 11] = [
+const OF_OTHER_SCENES: [&str; 12] = [
     "emission_order",
     "view_emission",
     "aerial_optical_depth",
@@ -32,6 +32,7 @@ const OF_OTHER_SCENES: [&str; 11] = [
     "volume_light",
     "local_clusters",
     "terrain",
+    "lamp_froxels",
     "local_media",
     "sky_lattice",
     "interpolate",

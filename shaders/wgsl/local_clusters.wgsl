@@ -1,9 +1,17 @@
 // Pass: which local volumes and lights may matter in each cluster.
 //
-// One invocation tests 32 spheres against the cone of one tile, and finds the slices that each of them reaches.
+// One invocation tests 32 spheres against the cone of one tile, and finds the slices that each of them reaches; of lights, also
+// those in which they are near as welkin::lamp_grid has it.
+//
+// Definitions: LAMP_FROXELS.
 
 #import welkin::camera::{camera, pixel_angle_rad, view_direction}
-#import welkin::cluster::{cluster_of, slice_of, COLUMNS, LIGHT_WORDS, SLICES, TILE, VOLUME_WORDS, WORDS}
+#import welkin::cluster::{
+    cluster_of, slice_end_m, slice_of, slice_start_m, COLUMNS, LIGHT_WORDS, SLICES, TILE, VOLUME_WORDS, WORDS,
+}
+#ifdef LAMP_FROXELS
+#import welkin::lamp_grid::{tile_rad, FIRST_M, NONE_NEAR_TILES}
+#endif
 #import welkin::local_light::local_lights
 #import welkin::observer::observer
 #import welkin::volume_field::{volumes, FOG_COUNT, VOLUME_COUNT}
@@ -47,6 +55,27 @@ fn sphere_of(word: u32, bit: u32) -> vec4<f32> {
     return vec4<f32>(0.0, 0.0, 0.0, -1.0);
 }
 
+// Whether a sphere comes into a cone from the camera, its middle in a direction.
+fn meets(cone: Cone, offset_m: vec3<f32>, radius_m: f32) -> bool {
+    let distance_m = length(offset_m);
+    let reach_rad = asin(min(radius_m / max(distance_m, 1e-9), 1.0));
+    return distance_m <= radius_m || angle_rad(cone.axis, offset_m / distance_m) <= cone.angle_rad + reach_rad;
+}
+
+#ifdef LAMP_FROXELS
+// Whether any place of a slice may find a share of a light near.
+fn is_near(cone: Cone, offset_m: vec3<f32>, core_m: f32, slice: u32) -> bool {
+    let distance_m = length(offset_m);
+    let tile = tile_rad();
+    let beside_m = NONE_NEAR_TILES * tile * max(slice_end_m(slice), FIRST_M);
+    let beside = distance_m + beside_m >= slice_start_m(slice)
+        && distance_m - beside_m <= slice_end_m(slice) && meets(cone, offset_m, beside_m);
+    let core = distance_m >= slice_start_m(slice) && distance_m - slice_end_m(slice) <= core_m
+        && angle_rad(cone.axis, offset_m / max(distance_m, 1e-9)) <= cone.angle_rad + 1.02 * NONE_NEAR_TILES * tile;
+    return beside || core;
+}
+#endif
+
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let word = id.x % WORDS;
@@ -57,19 +86,26 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let cone = cone_of(tile);
+    let asks_near = word >= VOLUME_WORDS + LIGHT_WORDS;
+    let of_word = select(word, word - LIGHT_WORDS, asks_near);
     var bits: array<u32, SLICES>;
     for (var bit = 0u; bit < 32u; bit++) {
-        let sphere = sphere_of(word, bit);
+        let sphere = sphere_of(of_word, bit);
         let offset = sphere.xyz - vec3<f32>(0.0, 0.0, observer.altitude_m);
-        let distance_m = length(offset);
-        let is_around = distance_m <= sphere.w;
-        let reach_rad = asin(min(sphere.w / max(distance_m, 1e-9), 1.0));
-        if sphere.w < 0.0 || !(is_around || angle_rad(cone.axis, offset / distance_m) <= cone.angle_rad + reach_rad) {
+        if sphere.w < 0.0 || !meets(cone, offset, sphere.w) {
             continue;
         }
+        let distance_m = length(offset);
         let last = slice_of(distance_m + sphere.w);
         for (var slice = slice_of(max(distance_m - sphere.w, 0.0)); slice <= last; slice++) {
-            bits[slice] |= 1u << bit;
+            var counts = true;
+#ifdef LAMP_FROXELS
+            if asks_near {
+                let light = 32u * (of_word - VOLUME_WORDS) + bit;
+                counts = is_near(cone, offset, local_lights[light].core_reach_m, slice);
+            }
+#endif
+            bits[slice] |= u32(counts) << bit;
         }
     }
     for (var slice = 0u; slice < SLICES; slice++) {

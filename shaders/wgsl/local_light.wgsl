@@ -4,6 +4,7 @@
 // Definitions: LOCAL_LIGHT_SAMPLES.
 
 #import welkin::cloud_grid::local_direction
+#import welkin::lamp_field::scattered_irradiance
 #import welkin::local_lists::local_lists
 #import welkin::volume_field::{fog_length_m, local_length_m, volumes, Place, FOG_COUNT}
 
@@ -18,15 +19,19 @@ struct LocalLight {
     // Where the cone's axis points.
     axis: vec3<f32>,
     inner_cosine: f32,
-    // Mean radiance of light scattered many times at a distance d: this times e^(-decay d) / d, W/m/sr/nm.
-    diffuse: vec3<f32>,
     outer_cosine: f32,
-    decay_per_m: vec3<f32>,
+    // Share of all directions that the cone lights.
+    solid_share: f32,
+    // Beyond this distance the core of the glow around it may be blurred.
+    core_reach_m: f32,
+    // The table of the matter that it stands in: welkin::lamp_field.
+    field: u32,
+    // Volumes that may stand before it, in `local_lists`.
     lists_first: u32,
     list_count: u32,
-    padding_a: u32,
-    padding_b: u32,
-    padding_c: u32,
+    // 1 - the mean cosine of that matter's phase function.
+    backward: f32,
+    padding: f32,
 }
 
 @group(1) @binding(45) var<storage, read> local_lights: array<LocalLight>;
@@ -39,6 +44,12 @@ fn cone_share(light: u32, away: vec3<f32>) -> f32 {
     let cosine = dot(away, local_lights[light].axis);
     let x = saturate((cosine - outer) / (local_lights[light].inner_cosine - outer));
     return select(x * x * (3.0 - 2.0 * x), 1.0, outer < -1.0);
+}
+
+// The same of its scattered light: what scattering has not turned yet keeps to the cone, the rest is a point light's of as much power.
+fn scattered_cone_share(light: u32, cone: f32, depth: vec3<f32>) -> f32 {
+    let mean_depth = dot(depth, vec3<f32>(1.0 / 3.0));
+    return mix(local_lights[light].solid_share, cone, exp(-local_lights[light].backward * mean_depth));
 }
 
 // Optical depth of fog and volumes between a place and a light.
@@ -63,9 +74,12 @@ fn local_irradiance(light: u32, place: Place, normal: vec3<f32>) -> vec3<f32> {
         return vec3<f32>(0.0);
     }
     let toward = offset / distance_m;
+    let cosine = dot(normal, toward);
     let depth = depth_to_local_light(light, place, toward, distance_m);
-    let squared = distance_m * distance_m + local_lights[light].size_squared;
-    let straight = local_lights[light].intensity * cone_share(light, -toward) * max(dot(normal, toward), 0.0) / squared;
-    let diffuse = local_lights[light].diffuse * exp(-local_lights[light].decay_per_m * distance_m) / sqrt(squared);
-    return straight * exp(-depth) + 3.1415927 * diffuse;
+    let cone = cone_share(light, -toward);
+    var share = cone * max(cosine, 0.0) * exp(-depth);
+#ifdef VOLUME_ORDERS
+    share += scattered_cone_share(light, cone, depth) * scattered_irradiance(local_lights[light].field, depth, cosine);
+#endif
+    return local_lights[light].intensity * share / (distance_m * distance_m + local_lights[light].size_squared);
 }

@@ -1,11 +1,11 @@
 #define_import_path welkin::media_ground
 // What fog leaves of the light on the ground and on hills, and what local lights bring there.
 //
-// Definitions: FOG_COUNT, LOCAL_LIGHT_COUNT.
+// Definitions: FOG_COUNT, LOCAL_LIGHT_COUNT, LAMP_FROXELS.
 
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::cloud_daylight::{light_in_air, surroundings}
-#import welkin::cluster::{LIGHT_WORDS, VOLUME_WORDS}
+#import welkin::cluster_members::{lamps_of, next_member, NONE}
 #import welkin::observer::observer
 #import welkin::slab::{downward, Slab}
 #import welkin::tables::table_sampler
@@ -13,10 +13,12 @@
 #import welkin::volume_grid::{block_uvw, spot_of}
 #import welkin::volume_source::volume_sky_image
 #if LOCAL_LIGHT_COUNT > 0
-#import welkin::local_light::local_irradiance
+#import welkin::lamp_grid::{near_share_on_ground, GROUND}
+#import welkin::local_light::{local_irradiance, local_lights}
+#ifdef LAMP_FROXELS
+#import welkin::far_lamps::from_far_lamps
 #endif
-
-@group(1) @binding(46) var<storage, read> cluster_masks: array<u32>;
+#endif
 
 // Share of the light on a horizontal plane, of which shares of the beam and of the sky reach the top of the fog.
 fn fog_share(place: Place, above: vec2<f32>) -> f32 {
@@ -52,14 +54,28 @@ fn volume_share(place: Place) -> f32 {
 fn lit_by_lamps(place: Place, normal: vec3<f32>, cluster: u32) -> vec3<f32> {
     var irradiance = vec3<f32>(0.0);
 #if LOCAL_LIGHT_COUNT > 0
-    for (var word = 0u; word < LIGHT_WORDS; word++) {
-        var bits = cluster_masks[cluster + VOLUME_WORDS + word];
-        while bits != 0u {
-            let light = 32u * word + firstTrailingBit(bits);
-            bits &= bits - 1u;
-            irradiance += local_irradiance(light, place, normal);
-        }
+    var lamps = lamps_of(cluster);
+    for (var light = next_member(&lamps); light != NONE; light = next_member(&lamps)) {
+        irradiance += local_irradiance(light, place, normal);
     }
 #endif
     return irradiance;
+}
+
+// The same of smooth ground that a pixel sees at a distance.
+fn ground_lit_by_lamps(place: Place, pixel: vec2<u32>, t_m: f32, cluster: u32) -> vec3<f32> {
+    let up = normalize(vec3<f32>(place.p.xy, place.p.z + atmosphere.radius_m));
+#ifdef LAMP_FROXELS
+    var irradiance = from_far_lamps(GROUND, pixel, t_m);
+    var lamps = lamps_of(cluster);
+    for (var light = next_member(&lamps); light != NONE; light = next_member(&lamps)) {
+        let near = near_share_on_ground(t_m, distance(local_lights[light].position_m, place.p));
+        if near > 0.0 {
+            irradiance += near * local_irradiance(light, place, up);
+        }
+    }
+    return irradiance;
+#else
+    return lit_by_lamps(place, up, cluster);
+#endif
 }

@@ -55,8 +55,9 @@ struct Volume {
     // Volumes that may stand between it and a light, in `local_lists`: where they begin, and how many.
     occluders_first: u32,
     occluder_count: u32,
-    padding_a: u32,
-    padding_b: u32,
+    // Its table of lamps' scattered light: welkin::lamp_field.
+    lamp_field: u32,
+    padding: u32,
 }
 
 @group(1) @binding(40) var<storage, read> volumes: array<Volume>;

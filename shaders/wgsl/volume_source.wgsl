@@ -10,20 +10,21 @@
 // escapes with the probability 1 / (1 + x), x its mean chord in optical depths (Wigner's rational approximation), or is
 // scattered again.
 //
-// Definitions: VOLUME_TERM_COUNT, VOLUME_ORDERS (light scattered more than once belongs in the picture), LIT, LIGHT_COUNT,
-// LOCAL_LIGHT_COUNT.
+// Local lights are welkin::lamp_source.
+//
+// Definitions: VOLUME_TERM_COUNT, VOLUME_ORDERS (light scattered more than once belongs in the picture), LIT, LIGHT_COUNT.
 
 #import welkin::atmosphere::atmosphere
 #import welkin::cloud_daylight::{light_in_air, surroundings, Surroundings}
-#import welkin::local_light::{cone_share, depth_to_local_light, local_lights}
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
 #import welkin::slab::{slab_light, Slab}
 #import welkin::tables::table_sampler
-#import welkin::volume_field::{place_of, volumes, Place, FOG_COUNT}
-#import welkin::volume_grid::{block_uvw, spot_of, Spot}
+#import welkin::volume_field::{volumes, Place, FOG_COUNT}
+#import welkin::volume_grid::{block_uvw, spot_of}
 
 const TERM_COUNT: u32 = #{VOLUME_TERM_COUNT}u;
+const TERM_STRIDE: u32 = TERM_COUNT + 1u;
 const TERM_LOBES: u32 = 4u;
 const FOUR_PI: f32 = 12.5663706;
 
@@ -35,7 +36,7 @@ struct VolumeTerm {
     lobes: array<PhaseLobe, TERM_LOBES>,
 }
 
-// Volume by volume.
+// Volume by volume: terms, then the phase function itself, of local lights.
 @group(1) @binding(47) var<storage, read> volume_terms: array<VolumeTerm>;
 @group(1) @binding(42) var volume_light_image: texture_3d<f32>;
 @group(1) @binding(43) var volume_sky_image: texture_3d<f32>;
@@ -61,9 +62,14 @@ struct Piece {
 fn term_per_sr(index: u32, term: u32, nu: f32) -> f32 {
     var sum = 0.0;
     for (var i = 0u; i < TERM_LOBES; i++) {
-        sum += lobe_per_sr(volume_terms[index * TERM_COUNT + term].lobes[i], nu);
+        sum += lobe_per_sr(volume_terms[index * TERM_STRIDE + term].lobes[i], nu);
     }
     return sum;
+}
+
+// The phase function itself.
+fn lamp_phase_per_sr(index: u32, nu: f32) -> f32 {
+    return term_per_sr(index, TERM_COUNT, clamp(nu, -1.0, 1.0));
 }
 
 // (1 - e^-x) / x.
@@ -119,7 +125,7 @@ fn from_lights(piece: Piece, stretch: Stretch) -> vec3<f32> {
         let arriving = light_in_air(light, piece.place.altitude_m, mu_s);
         let nu = clamp(dot(stretch.view, observer.lights[light].direction), -1.0, 1.0);
         for (var k = 0u; k < TERM_COUNT; k++) {
-            let a = volume_terms[piece.index * TERM_COUNT + k].attenuation;
+            let a = volume_terms[piece.index * TERM_STRIDE + k].attenuation;
             radiance += term_per_sr(piece.index, k, nu) * arriving * exp(-a * beam.rgb - beam.a) * seen(stretch, a);
         }
 #ifdef VOLUME_ORDERS
@@ -132,57 +138,5 @@ fn from_lights(piece: Piece, stretch: Stretch) -> vec3<f32> {
         radiance += behind * (seen(stretch, vec3<f32>(1.0)) - q * seen(stretch, q));
 #endif
     }
-    return radiance;
-}
-
-// Angle at a local light over which one sample stands for a step, rad.
-const LIGHT_ANGLE_RAD: f32 = 0.2;
-const MOST_LIGHT_SAMPLES: u32 = 8u;
-
-// The same of one local light: the inverse square of the distance is integrated along the step in closed form, as an angle
-// at the light (Kulla & Fajardo 2012, section 3).
-fn from_local_light(light: u32, piece: Piece, stretch: Stretch) -> vec3<f32> {
-    let position_m = local_lights[light].position_m;
-    let nearest_m = dot(position_m - stretch.origin, stretch.view);
-    let off = stretch.origin + stretch.view * nearest_m - position_m;
-    let off_m = sqrt(dot(off, off) + local_lights[light].size_squared + 1e-6);
-    let first = (stretch.from_m - nearest_m) / off_m;
-    let last = first + stretch.step_m / off_m;
-    let reach_m = local_lights[light].reach_m;
-    let closest = off_m * off_m + pow(max(max(first, -last), 0.0) * off_m, 2.0);
-    if closest >= reach_m * reach_m {
-        return vec3<f32>(0.0);
-    }
-    let from_rad = atan(first);
-    let opening_rad = max(atan(last) - from_rad, 0.0);
-    let count = u32(clamp(ceil(opening_rad / LIGHT_ANGLE_RAD), 1.0, f32(MOST_LIGHT_SAMPLES)));
-    let per_sample = opening_rad / (f32(count) * off_m * stretch.step_m);
-    var radiance = vec3<f32>(0.0);
-    for (var i = 0u; i < count; i++) {
-        let t_m = clamp(
-            nearest_m + off_m * tan(from_rad + opening_rad * (f32(i) + 0.5) / f32(count)),
-            stretch.from_m, stretch.from_m + stretch.step_m
-        );
-        let place = place_of(stretch.origin + stretch.view * t_m);
-        let offset = position_m - place.p;
-        let distance_m = max(length(offset), 1e-6);
-        let toward = offset / distance_m;
-        let nu = clamp(dot(stretch.view, toward), -1.0, 1.0);
-        let depth = depth_to_local_light(light, place, toward, distance_m)
-            + stretch.before + stretch.within * ((t_m - stretch.from_m) / stretch.step_m);
-        let arriving = local_lights[light].intensity * cone_share(light, -toward) * per_sample;
-        for (var k = 0u; k < TERM_COUNT; k++) {
-            let a = volume_terms[piece.index * TERM_COUNT + k].attenuation;
-            radiance += term_per_sr(piece.index, k, nu) * arriving * exp(-a * depth);
-        }
-    }
-#ifdef VOLUME_ORDERS
-    // int dt / distance over the step.
-    let q = vec3<f32>(volumes[piece.index].similarity);
-    let distance_m = sqrt(off_m * off_m + pow((0.5 * (first + last)) * off_m, 2.0));
-    let per_distance = (asinh(last) - asinh(first)) / stretch.step_m;
-    let mean = local_lights[light].diffuse * exp(-local_lights[light].decay_per_m * distance_m) * per_distance;
-    radiance += volumes[piece.index].similarity * mean * seen(stretch, q);
-#endif
     return radiance;
 }

@@ -6,7 +6,7 @@ use welkin_shaders::{Definition, Definitions};
 use super::blocks::{
     ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count, local_light_count, volume_term_count,
 };
-use super::{local_clusters, ordinates, volume_light};
+use super::{lamp_froxels, local_clusters, ordinates, volume_light};
 use crate::plan::{CloudScattering, Facts, Surface, TableFormat, Treatment, lattice_cell};
 use crate::probe::Orders;
 
@@ -102,6 +102,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("CLOUD_ORDINATES", facts.cloud_scattering().ordinate_groups() > 0),
         ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),
         ("LOCAL_MEDIA", facts.has_local_media()),
+        ("LAMP_FROXELS", lamp_froxels::are_there(facts)),
         ("VOLUME_NOISE", facts.has_volume_noise()),
         ("VOLUME_GRIDS", facts.volumes.iter().any(|volume| volume.grid.is_some())),
         ("VOLUME_ORDERS", facts.cloud_scattering() != CloudScattering::Single),

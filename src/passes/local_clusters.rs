@@ -1,7 +1,7 @@
 //! Which local volumes and lights may matter in each cluster of pixels and distances.
 
 use super::blocks::local_light_count;
-use super::{Pass, Recording, RenderError, volume_light};
+use super::{Pass, Recording, RenderError, lamp_froxels, volume_light};
 use crate::gpu::Work;
 use crate::plan::{Declaration, Facts, Fingerprint};
 
@@ -23,7 +23,7 @@ pub const PASS: Pass = Pass {
 };
 
 /// Pixels along a tile's side: WGSL `TILE`.
-const TILE: u32 = 16;
+pub const TILE: u32 = 16;
 /// Slices of distance: WGSL `SLICES`.
 const SLICES: u32 = 24;
 
@@ -35,7 +35,8 @@ pub fn columns(facts: &Facts) -> u32 {
 /// Words of bits of a cluster.
 fn words(facts: &Facts) -> u32 {
     let volumes = facts.volumes.len() as u32 - facts.fog_count();
-    (volumes.div_ceil(32) + local_light_count(facts).div_ceil(32)).max(1)
+    let lists = if lamp_froxels::are_there(facts) { 2 } else { 1 };
+    (volumes.div_ceil(32) + lists * local_light_count(facts).div_ceil(32)).max(1)
 }
 
 fn tiles(facts: &Facts) -> u32 {

@@ -25,6 +25,7 @@ pub const PASS: Pass = Pass {
             "volume_light_image",
             "volume_sky_image",
             "cluster_masks",
+            "lamp_froxels",
             "terrain_image",
         ],
         writes: &["media_radiance_image", "media_transmittance_image", "media_beam_image", "media_diffuse_image"],

@@ -26,6 +26,7 @@ mod higher_order;
 mod higher_source;
 mod interpolate;
 mod isotropic_series;
+mod lamp_froxels;
 mod local_clusters;
 mod local_media;
 mod multiple_scattering;
@@ -95,10 +96,11 @@ pub const CLOUDS: [Pass; 10] = [
 ];
 
 /// What makes a frame of them, in order.
-pub const FRAME: [Pass; 9] = [
+pub const FRAME: [Pass; 10] = [
     terrain::PASS,
     clouds::PASS,
     cloud_reconstruction::PASS,
+    lamp_froxels::PASS,
     local_media::PASS,
     sky_lattice::PASS,
     interpolate::PASS,

@@ -67,11 +67,14 @@ impl<'a> Recording<'a> {
         if facts.has_local_media() {
             let lamps = lamps(facts);
             let lists = LocalLists::new(facts, &lamps);
-            resources.fill_buffer("volumes", &volume_blocks(facts, &lists))?;
+            resources.lamp_fields.prepare(facts);
+            resources.fill_buffer("volumes", &volume_blocks(facts, &lists, &resources.lamp_fields))?;
             resources.fill_buffer("volume_terms", &volume_terms(facts))?;
             resources.fill_buffer("volume_samples", &volume_samples(facts))?;
             resources.fill_buffer("local_lists", &lists.to_words())?;
-            resources.fill_buffer("local_lights", &local_light_blocks(facts, &lamps, &lists))?;
+            resources
+                .fill_buffer("local_lights", &local_light_blocks(facts, &lamps, &lists, &resources.lamp_fields))?;
+            resources.fill_buffer("lamp_fields", &resources.lamp_fields.to_texels())?;
         }
         if let Some(terrain) = facts.scene.terrain.as_ref() {
             resources.fill_buffer("height_field", &height_field_block(terrain))?;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use welkin_shaders::{Definitions, ParameterBuffers, Shader};
 
+use super::blocks::LampFields;
 use super::pipelines::Pipelines;
 use super::{RenderError, ShaderSources};
 use crate::gpu::{
@@ -36,6 +37,8 @@ pub struct Resources {
     pub screen: ScreenEncoding,
     /// What times are taken with; none for the best that the device has.
     pub clock: Option<Clock>,
+    /// Light around lamps, of the kinds of matter that were seen last.
+    pub lamp_fields: LampFields,
     /// Images of the host's that a frame is drawn into, and what it does with them next.
     pub targets: Vec<(&'static str, GpuImage, NextUse)>,
 }
@@ -94,6 +97,7 @@ impl Resources {
             pace: None,
             screen: ScreenEncoding::Srgb,
             clock: None,
+            lamp_fields: LampFields::default(),
             targets: Vec::new(),
         })
     }

@@ -7,6 +7,7 @@ use glam::DVec3;
 use welkin_lut::volume::{Volume, VolumeField, VolumeForm, VolumeParameters};
 use welkin_lut::{BAND_COUNT, Bands};
 
+use super::lamp_fields::{LampFields, NO_FIELD};
 use super::local_lists::LocalLists;
 use super::vec3;
 use super::volumes::mean_chord_m;
@@ -23,12 +24,14 @@ pub struct LocalLightBlock {
     pub(super) size_squared: f32,
     pub(super) axis: [f32; 3],
     pub(super) inner_cosine: f32,
-    pub(super) diffuse: [f32; 3],
     pub(super) outer_cosine: f32,
-    pub(super) decay_per_m: [f32; 3],
+    pub(super) solid_share: f32,
+    pub(super) core_reach_m: f32,
+    pub(super) field: u32,
     pub(super) lists_first: u32,
     pub(super) list_count: u32,
-    pub(super) padding: [u32; 3],
+    pub(super) backward: f32,
+    pub(super) padding: f32,
 }
 
 /// What shines from a place, and how far that counts.
@@ -37,6 +40,8 @@ pub struct Lamp {
     pub position_m: DVec3,
     /// Farther away it is left out, m.
     pub reach_m: f64,
+    /// Farther away the core of the glow around it may be blurred, m.
+    core_reach_m: f64,
     intensity: Bands,
     cone: Option<Cone>,
     /// Radius of what shines, m.
@@ -49,18 +54,22 @@ struct Surroundings {
     absorption_per_m: Bands,
     /// The share of scattering that turns light back.
     backward: f64,
-    /// Of light that was scattered once, the share that is scattered again before it leaves.
-    kept: f64,
+    /// The volume that scatters most there.
+    densest: Option<usize>,
 }
 
 /// Farthest that a light in clear air reaches, in distances to its neighbour where that is all that limits it, m.
 const LONGEST_REACH_M: f64 = 1e5;
+
+/// How much more of its light a lamp brings where the core of its glow is found pixel by pixel.
+const CORE_SHARE: f64 = 10.0;
 
 /// Lights and glowing volumes of a scene.
 pub fn lamps(facts: &Facts) -> Vec<Lamp> {
     let lights = facts.local_lights.iter().map(|light| Lamp {
         position_m: light.position_m,
         reach_m: LONGEST_REACH_M,
+        core_reach_m: LONGEST_REACH_M,
         intensity: light.intensity,
         cone: light.cone,
         size_m: 0.0,
@@ -71,7 +80,9 @@ pub fn lamps(facts: &Facts) -> Vec<Lamp> {
         let others = positions.iter().enumerate().filter(|(other, _)| *other != index);
         let nearest_m = others.map(|(_, other)| other.distance(lamp.position_m)).fold(f64::INFINITY, f64::min);
         let around = surroundings(facts, lamp.position_m);
-        lamp.reach_m = reach_m(nearest_m.max(1.0), &around, f64::from(facts.settings.volumes.lamp_share));
+        let share = f64::from(facts.settings.volumes.lamp_share);
+        lamp.reach_m = reach_m(nearest_m.max(1.0), &around, share);
+        lamp.core_reach_m = reach_m(nearest_m.max(1.0), &around, share / CORE_SHARE);
     }
     all
 }
@@ -97,6 +108,7 @@ fn glow(volume: &Volume) -> Option<Lamp> {
     Some(Lamp {
         position_m: DVec3::from_array(centre_m),
         reach_m: LONGEST_REACH_M,
+        core_reach_m: LONGEST_REACH_M,
         intensity: std::array::from_fn(|band| {
             volume.emission_per_m[band] * content_m3 / (1.0 + volume.absorption_per_m[band] * chord_m)
         }),
@@ -134,10 +146,10 @@ fn surroundings(facts: &Facts, at: DVec3) -> Surroundings {
         scattering_per_m: [0.0; BAND_COUNT],
         absorption_per_m: [0.0; BAND_COUNT],
         backward: 1.0,
-        kept: 0.0,
+        densest: None,
     };
-    let (mut turned, mut scattered) = (0.0, 0.0);
-    for volume in &facts.volumes {
+    let (mut turned, mut scattered, mut most) = (0.0, 0.0, 0.0);
+    for (index, volume) in facts.volumes.iter().enumerate() {
         let even = Volume { noise: None, ..(*volume).clone() };
         let density =
             VolumeField::new(&even, VolumeParameters::new(&even, 0.0)).density(at.to_array(), [at.x, at.y], at.z)
@@ -150,13 +162,9 @@ fn surroundings(facts: &Facts, at: DVec3) -> Surroundings {
         let mean = density * volume.scattering_per_m.iter().sum::<f64>() / BAND_COUNT as f64;
         scattered += mean;
         turned += mean * backward;
-        // Across a bank of fog, as its matter at the lamp and its height say; across a volume, its mean chord.
-        let chord_m = volume.altitudes_m().map_or(mean_chord_m(&volume.form), |[bottom_m, top_m]| {
-            let scale_m = f64::from(VolumeParameters::new(volume, 0.0).per_scale_height).recip();
-            2.0 * if scale_m.is_finite() { scale_m } else { top_m - bottom_m }
-        });
-        let x = mean * backward * chord_m;
-        all.kept = f64::max(all.kept, x / (1.0 + x));
+        if mean > most {
+            (most, all.densest) = (mean, Some(index));
+        }
     }
     if scattered > 0.0 {
         all.backward = turned / scattered;
@@ -179,23 +187,13 @@ fn reach_m(neighbour_m: f64, around: &Surroundings, share: f64) -> f64 {
 }
 
 impl LocalLightBlock {
-    fn new(facts: &Facts, lamp: &Lamp, list: std::ops::Range<usize>) -> Self {
+    fn new(facts: &Facts, lamp: &Lamp, fields: &LampFields, list: std::ops::Range<usize>) -> Self {
         let around = surroundings(facts, lamp.position_m);
-        let transport = around.scattering_per_m.map(|b| b * around.backward);
         let (axis, inner, outer) = match lamp.cone {
             Some(cone) => (cone.axis.to_vector(), cone.inner_cosine, cone.outer_cosine),
             None => (DVec3::Z, 0.0, -2.0),
         };
-        // A cone's light, once scattered, is that of a point with the same flux.
         let solid_share = if lamp.cone.is_some() { 0.5 * (1.0 - 0.5 * (inner + outer)) } else { 1.0 };
-        // Diffusion from a point: 3 c' / (4 π d) of its intensity (Ishimaru 1978, eq. 9-41), over 4 π of directions.
-        let diffuse: Bands = std::array::from_fn(|band| {
-            lamp.intensity[band] * solid_share * around.kept * 3.0 * transport[band] / (4.0 * PI)
-        });
-        let decay: Bands = std::array::from_fn(|band| {
-            let a = around.absorption_per_m[band];
-            (3.0 * a * (a + transport[band])).sqrt()
-        });
         Self {
             position_m: lamp.position_m.as_vec3().to_array(),
             reach_m: lamp.reach_m as f32,
@@ -203,21 +201,28 @@ impl LocalLightBlock {
             size_squared: (lamp.size_m * lamp.size_m) as f32,
             axis: axis.as_vec3().to_array(),
             inner_cosine: inner as f32,
-            diffuse: vec3(diffuse),
             outer_cosine: outer as f32,
-            decay_per_m: vec3(decay),
+            solid_share: solid_share as f32,
+            core_reach_m: lamp.core_reach_m as f32,
+            field: around.densest.map_or(NO_FIELD, |index| fields.of_volume(facts.volumes[index])),
             lists_first: list.start as u32,
             list_count: list.len() as u32,
-            padding: [0; 3],
+            backward: around.backward as f32,
+            padding: 0.0,
         }
     }
 }
 
 /// WGSL `array<LocalLight>`; one that does not shine where there is none.
-pub fn local_light_blocks(facts: &Facts, lamps: &[Lamp], lists: &LocalLists) -> Vec<LocalLightBlock> {
+pub fn local_light_blocks(
+    facts: &Facts,
+    lamps: &[Lamp],
+    lists: &LocalLists,
+    fields: &LampFields,
+) -> Vec<LocalLightBlock> {
     let numbered = lamps.iter().enumerate();
     let mut blocks: Vec<_> =
-        numbered.map(|(index, lamp)| LocalLightBlock::new(facts, lamp, lists.of_light(index))).collect();
+        numbered.map(|(index, lamp)| LocalLightBlock::new(facts, lamp, fields, lists.of_light(index))).collect();
     blocks.resize(blocks.len().max(1), LocalLightBlock::zeroed());
     blocks
 }

@@ -5,6 +5,7 @@ mod camera;
 mod cloud_frame;
 mod clouds;
 mod emission;
+mod lamp_fields;
 mod local_lights;
 mod local_lists;
 mod observer;
@@ -17,6 +18,7 @@ pub use camera::CameraBlock;
 pub use cloud_frame::cloud_frame_block;
 pub use clouds::{cloud_layers, cloud_matter, cloud_term_count, cloud_terms};
 pub use emission::{ZONAL_COUNT, emission_block, emission_breakpoints_m};
+pub use lamp_fields::LampFields;
 pub use local_lights::{lamps, local_light_blocks, local_light_count};
 pub use local_lists::LocalLists;
 pub use observer::observer_block;
@@ -195,7 +197,8 @@ mod tests {
                 again,
                 first_block,
                 occluders_first,
-                occluder_count
+                occluder_count,
+                lamp_field
             ]
         );
         assert_eq!(size(&media, "Volume"), size_of::<VolumeBlock>());
@@ -212,11 +215,13 @@ mod tests {
                 size_squared,
                 axis,
                 inner_cosine,
-                diffuse,
                 outer_cosine,
-                decay_per_m,
+                solid_share,
+                core_reach_m,
+                field,
                 lists_first,
-                list_count
+                list_count,
+                backward
             ]
         );
         assert_eq!(size(&media, "LocalLight"), size_of::<LocalLightBlock>());

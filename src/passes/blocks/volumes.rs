@@ -5,6 +5,7 @@ use welkin_lut::volume::{Volume, VolumeForm, VolumeParameters};
 use welkin_lut::{BAND_COUNT, Bands, PhaseFunction};
 
 use super::atmosphere::{PhaseLobeBlock, scaled_lobes};
+use super::lamp_fields::LampFields;
 use super::local_lists::LocalLists;
 use super::vec3;
 use crate::passes::ordinates::coefficients::{BAND_ASYMMETRY, band_attenuations, reduced_cosine};
@@ -42,7 +43,8 @@ pub struct VolumeBlock {
     pub(super) first_block: u32,
     pub(super) occluders_first: u32,
     pub(super) occluder_count: u32,
-    pub(super) padding: [u32; 2],
+    pub(super) lamp_field: u32,
+    pub(super) padding: u32,
 }
 
 /// WGSL `VolumeTerm`.
@@ -81,7 +83,7 @@ fn again(volume: &Volume) -> Bands {
 }
 
 impl VolumeBlock {
-    fn new(facts: &Facts, index: usize, lists: &LocalLists, grid_first: u32) -> Self {
+    fn new(facts: &Facts, index: usize, lists: &LocalLists, fields: &LampFields, grid_first: u32) -> Self {
         let volume = facts.volumes[index];
         let p = VolumeParameters::new(volume, facts.scene.time_s);
         let [g, f] = [1, 2].map(|degree| volume.phase.legendre_moment(degree));
@@ -116,17 +118,18 @@ impl VolumeBlock {
             first_block: first_block as u32,
             occluders_first: occluders.start as u32,
             occluder_count: occluders.len() as u32,
-            padding: [0; 2],
+            lamp_field: fields.of_volume(volume),
+            padding: 0,
         }
     }
 }
 
 /// WGSL `array<Volume>`, with one that is nothing where there is none.
-pub fn volume_blocks(facts: &Facts, lists: &LocalLists) -> Vec<VolumeBlock> {
+pub fn volume_blocks(facts: &Facts, lists: &LocalLists, fields: &LampFields) -> Vec<VolumeBlock> {
     let mut first = 0;
     let mut blocks = Vec::with_capacity(facts.volumes.len().max(1));
     for (index, volume) in facts.volumes.iter().enumerate() {
-        blocks.push(VolumeBlock::new(facts, index, lists, first));
+        blocks.push(VolumeBlock::new(facts, index, lists, fields, first));
         first += volume.grid.as_ref().map_or(0, |grid| grid.samples().len() as u32);
     }
     blocks.resize(blocks.len().max(1), VolumeBlock::zeroed());
@@ -157,12 +160,13 @@ pub fn volume_term_count(facts: &Facts) -> u32 {
     if facts.cloud_scattering() == CloudScattering::Single { 1 } else { 2 }
 }
 
-/// WGSL `array<VolumeTerm>`: volume by volume.
+/// WGSL `array<VolumeTerm>`: volume by volume, and after the terms of each its phase function, with which it scatters light of lamps.
 pub fn volume_terms(facts: &Facts) -> Vec<VolumeTermBlock> {
     let terms = |volume: &Volume| {
         let phase = if volume.scatters() { &volume.phase } else { &PhaseFunction::Isotropic };
+        let once = VolumeTermBlock::new([1.0; BAND_COUNT], phase, &[(1.0, 1.0)]);
         if volume_term_count(facts) == 1 {
-            return vec![VolumeTermBlock::new([1.0; BAND_COUNT], phase, &[(1.0, 1.0)])];
+            return vec![once; 2];
         }
         let extinction = volume.extinction_per_m();
         let by_band: [[f64; 2]; BAND_COUNT] = std::array::from_fn(|band| {
@@ -172,6 +176,7 @@ pub fn volume_terms(facts: &Facts) -> Vec<VolumeTermBlock> {
         vec![
             VolumeTermBlock::new(by_band.map(|[sharp, _]| sharp), phase, &[(1.0, 1.0), (-1.0, BAND_ASYMMETRY)]),
             VolumeTermBlock::new(by_band.map(|[_, wide]| wide), phase, &[(1.0, BAND_ASYMMETRY)]),
+            once,
         ]
     };
     let mut all: Vec<_> = facts.volumes.iter().flat_map(|volume| terms(volume)).collect();

@@ -1,0 +1,67 @@
+#define_import_path welkin::cloud_step
+// A march's step through clouds: all layers at a point.
+
+#import welkin::cloud_field::{cloud_layers, layer_density, CLOUD_LAYER_COUNT}
+#import welkin::cloud_source::{step_radiance, Sample, PHASE_COUNT}
+
+fn is_inside(layer: u32, altitude: f32) -> bool {
+    let up_m = altitude - cloud_layers[layer].base_m;
+    return up_m >= 0.0 && up_m <= cloud_layers[layer].thickness_m;
+}
+
+fn is_in_clouds(altitude: f32) -> bool {
+    var inside = false;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        inside = inside || is_inside(layer, altitude);
+    }
+    return inside;
+}
+
+fn layer_extinction(layer: u32, map: vec2<f32>, altitude: f32) -> f32 {
+    return cloud_layers[layer].extinction_per_m * layer_density(layer, map, altitude);
+}
+
+fn cloud_extinction(map: vec2<f32>, altitude: f32) -> f32 {
+    var extinction = 0.0;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        if is_inside(layer, altitude) {
+            extinction += layer_extinction(layer, map, altitude);
+        }
+    }
+    return extinction;
+}
+
+// Where a step looks, and what clouds hide before it and in it, as optical depths.
+struct CloudStep {
+    map: vec2<f32>,
+    altitude_m: f32,
+    // Unit vector from the planet's centre.
+    up: vec3<f32>,
+    extinction: f32,
+    before: f32,
+    within: f32,
+}
+
+// Light of the clouds in a step, before the air.
+fn from_clouds(step: CloudStep, view: vec3<f32>, phase: ptr<function, array<f32, PHASE_COUNT>>) -> vec3<f32> {
+    var sample: Sample;
+    sample.map = step.map;
+    sample.altitude_m = step.altitude_m;
+    sample.up = step.up;
+    sample.before = step.before;
+    sample.step = step.within;
+    var light = vec3<f32>(0.0);
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        if is_inside(layer, step.altitude_m) {
+            sample.layer = layer;
+            sample.height = (step.altitude_m - cloud_layers[layer].base_m) / cloud_layers[layer].thickness_m;
+#if CLOUD_LAYER_COUNT > 1
+            let share = layer_extinction(layer, step.map, step.altitude_m) / step.extinction;
+            light += share * step_radiance(sample, view, phase);
+#else
+            light += step_radiance(sample, view, phase);
+#endif
+        }
+    }
+    return light;
+}

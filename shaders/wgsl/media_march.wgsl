@@ -1,0 +1,175 @@
+#define_import_path welkin::media_march
+// What every march through media shares: a pixel's ray with its cuts, and the air that it passes.
+//
+// The air's light in front of a depth t is taken as A (1 - T(t)) / (1 - T(end)), A the whole ray's: exact where the light
+// scattered per optical depth does not change along the ray. Media take from it where they stand before the first light; what
+// clouds scatter down adds to the air's diffuse light.
+//
+// Definitions: CLOUDS; SURFACE; AIR; FOG_COUNT.
+
+#import welkin::atmosphere::{atmosphere, extinction_at}
+#import welkin::camera::view_direction
+#ifdef CLOUDS
+#import welkin::cloud_daylight::{clear_fluxes, daylight, diffuse_share, ClearFluxes}
+#import welkin::cloud_field::cloud_layers
+#endif
+#import welkin::cloud_field::{to_map, CLOUD_LAYER_COUNT}
+#import welkin::cloud_noise::hash
+#import welkin::geometry
+#import welkin::observer::observer
+#import welkin::volume_field::FOG_COUNT
+#if FOG_COUNT > 0
+#import welkin::volume_field::volumes
+#endif
+
+#ifdef SURFACE
+// What stands before the camera: its distance, m, beside its light.
+@group(0) @binding(19) var surface_image: texture_2d<f32>;
+#endif
+
+const NEVER_M: f32 = 1e30;
+// Two shells, each met twice.
+const CROSSINGS: u32 = 4u * (FOG_COUNT + CLOUD_LAYER_COUNT);
+const CROSSING_SLOTS: u32 = max(CROSSINGS, 1u);
+// Optical depth beyond which nothing is looked at. Light scattered many times comes from deep inside, dimmed
+// by only that share of the depth which turns it away, a quarter for droplets: e^-6 of it is left here. A light's disc, a
+// hundred thousand times as bright as the sky, is hidden as well.
+const OPAQUE: f32 = 24.0;
+// From this depth on steps grow in proportion to it, up to so many times: what is seen there is smooth.
+const SMOOTH_DEPTH: f32 = 4.0;
+const SMOOTH_GROWTH: f32 = 4.0;
+
+struct Ray {
+    pixel: vec2<u32>,
+    direction: vec3<f32>,
+    end_m: f32,
+    meets_ground: bool,
+    // Where it crosses the bottoms and tops of layers; NEVER_M for those behind.
+    crossings_m: array<f32, CROSSING_SLOTS>,
+}
+
+fn observer_position() -> vec3<f32> {
+    return vec3<f32>(0.0, 0.0, observer.altitude_m);
+}
+
+fn position_m(ray: ptr<function, Ray>, t_m: f32) -> vec3<f32> {
+    return observer_position() + (*ray).direction * t_m;
+}
+
+fn altitude_m(ray: ptr<function, Ray>, t_m: f32) -> f32 {
+    return geometry::altitude_along(atmosphere.radius_m, observer.altitude_m, (*ray).direction.z, t_m);
+}
+
+// Both distances to a shell, NEVER_M for those behind.
+fn shell_crossings_m(mu: f32, shell_m: f32) -> vec2<f32> {
+    let both = geometry::shell_crossings_m(atmosphere.radius_m, observer.altitude_m, mu, shell_m);
+    return select(vec2<f32>(NEVER_M), both, both > vec2<f32>(0.0));
+}
+
+fn cut_at_layer(ray: ptr<function, Ray>, layer: u32, bottom_m: f32, top_m: f32) {
+    let bottom = shell_crossings_m((*ray).direction.z, bottom_m);
+    let top = shell_crossings_m((*ray).direction.z, top_m);
+    (*ray).crossings_m[4u * layer] = bottom.x;
+    (*ray).crossings_m[4u * layer + 1u] = bottom.y;
+    (*ray).crossings_m[4u * layer + 2u] = top.x;
+    (*ray).crossings_m[4u * layer + 3u] = top.y;
+}
+
+fn ray_of(pixel: vec2<u32>) -> Ray {
+    var ray: Ray;
+    ray.pixel = pixel;
+    ray.direction = view_direction(pixel);
+    ray.end_m = NEVER_M;
+    if ray.direction.z < geometry::horizon_mu(atmosphere.radius_m, observer.altitude_m) {
+        ray.end_m = geometry::distance_to_shell_from_above(atmosphere.radius_m, observer.altitude_m, ray.direction.z, 0.0);
+        ray.meets_ground = true;
+    }
+#ifdef SURFACE
+    // Without a surface it is never.
+    let surface_m = textureLoad(surface_image, pixel, 0).a;
+    ray.meets_ground = ray.meets_ground && surface_m > ray.end_m;
+    ray.end_m = min(ray.end_m, surface_m);
+#endif
+#if FOG_COUNT > 0
+    for (var i = 0u; i < FOG_COUNT; i++) {
+        cut_at_layer(&ray, i, volumes[i].bottom_m, volumes[i].top_m);
+    }
+#endif
+#ifdef CLOUDS
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        let base_m = cloud_layers[layer].base_m;
+        cut_at_layer(&ray, FOG_COUNT + layer, base_m, base_m + cloud_layers[layer].thickness_m);
+    }
+#endif
+    return ray;
+}
+
+// The next crossing of a layer after a distance, at most the ray's end.
+fn next_crossing_m(ray: ptr<function, Ray>, t_m: f32) -> f32 {
+    let after = t_m * 1.000001 + 0.01;
+    var next = NEVER_M;
+    for (var i = 0u; i < CROSSINGS; i++) {
+        let crossing = (*ray).crossings_m[i];
+        next = select(next, min(next, crossing), crossing > after);
+    }
+    return min(next, (*ray).end_m);
+}
+
+// How much longer steps may be behind an optical depth.
+fn growth_behind(depth: f32) -> f32 {
+    return clamp(depth / SMOOTH_DEPTH, 1.0, SMOOTH_GROWTH);
+}
+
+// Where a pixel looks at each of its steps, in [0, 1).
+fn place_in_step(pixel: vec2<u32>, jitter: f32) -> f32 {
+    return fract(f32(hash(vec3<i32>(vec2<i32>(pixel), 0), 1u) >> 8u) / 16777216.0 + jitter);
+}
+
+// The air along a ray.
+struct Air {
+    // Optical depth so far.
+    depth: vec3<f32>,
+    // int T S dT_air, T of media and S what clouds leave of the light that the air scatters: of the beam, of diffuse light.
+    beam: vec3<f32>,
+    diffuse: vec3<f32>,
+#ifdef CLOUDS
+    clear: ClearFluxes,
+#endif
+}
+
+fn clear_air() -> Air {
+    var air: Air;
+#ifdef CLOUDS
+    air.clear = clear_fluxes(cloud_layers[0].base_m, observer.lights[0].direction.z);
+#endif
+    return air;
+}
+
+// Steps through air, whose light changes where shadows of clouds lie, m; longer in the distance.
+const AIR_STEP_M: f32 = 400.0;
+const AIR_STEP_GROWTH: f32 = 0.05;
+const AIR_STEPS: f32 = 24.0;
+
+// Moves through air alone, behind media of a transmittance.
+fn pass_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>, from_m: f32, to_m: f32) {
+#ifdef AIR
+    let longest_m = max(AIR_STEP_M, AIR_STEP_GROWTH * from_m);
+    let count = u32(clamp(ceil((to_m - from_m) / longest_m), 1.0, AIR_STEPS));
+    let step_m = (to_m - from_m) / f32(count);
+    for (var i = 0u; i < count; i++) {
+        let middle_m = from_m + (f32(i) + 0.5) * step_m;
+        let altitude = altitude_m(ray, middle_m);
+        let before = exp(-(*air).depth);
+        (*air).depth += step_m * extinction_at(altitude);
+        let share = media * (before - exp(-(*air).depth));
+#ifdef CLOUDS
+        let day = daylight(to_map(atmosphere.radius_m, position_m(ray, middle_m)), altitude);
+        (*air).beam += day.straight * share;
+        (*air).diffuse += diffuse_share(day, (*air).clear) * share;
+#else
+        (*air).beam += share;
+        (*air).diffuse += share;
+#endif
+    }
+#endif
+}
