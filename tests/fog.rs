@@ -15,7 +15,7 @@ use welkin::scene::Scene;
 
 const CAPTURE: Outputs = Outputs { capture: true, picture: false };
 /// One in so many pixels is compared where lamps are many.
-const SPARSE: usize = 37;
+const SPARSE: usize = 73;
 const PASSES: [&str; 4] = ["volume_light", "local_clusters", "lamp_froxels", "local_media"];
 
 /// Empty space over black ground, without light, and what is said.
@@ -134,7 +134,7 @@ fn a_scene_without_fog_volumes_and_lamps_runs_nothing_of_theirs_and_keeps_no_byt
 /// So many lamps in two rows along the view, of different brightness.
 fn row_of_lamps(count: usize, intensity: f64) -> String {
     let lamp = |i: usize| {
-        let (side, north) = (if i % 2 == 0 { -7 } else { 6 }, 18 + 9 * i);
+        let (side, north) = (if i.is_multiple_of(2) { -7 } else { 6 }, 18 + 9 * i);
         let brightness = intensity * (1.0 + (i % 3) as f64);
         format!("[[light.point]]\nname = \"{i}\"\nposition_m = [{side}, {north}, 5]\nintensity = {brightness}\n")
     };

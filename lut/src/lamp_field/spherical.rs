@@ -104,7 +104,7 @@ impl Problem<'_> {
         let down = l / (2.0 * l + 1.0);
         for (side, sign) in sides.into_iter().zip([-1.0, 1.0]) {
             if degree + 1 < SOLVED {
-                equations.add(row, side + (degree + 1) / 2, up * (sign / step + 0.5 * l));
+                equations.add(row, side + degree.div_ceil(2), up * (sign / step + 0.5 * l));
             }
             if degree > 0 {
                 equations.add(row, side + (degree - 1) / 2, down * (sign / step - 0.5 * (l + 1.0)));
