@@ -18,7 +18,7 @@ use welkin::renderer::{Renderer, Timings};
 use welkin::scene::{Effect, Light, Scene};
 
 /// Scenes, and elevations of the view in place of their own, deg.
-const SCENES: [(&str, Option<f64>); 12] = [
+const SCENES: [(&str, Option<f64>); 11] = [
     ("noon", None),
     ("twilight", None),
     ("moonlight", None),
@@ -28,7 +28,6 @@ const SCENES: [(&str, Option<f64>); 12] = [
     ("hills", None),
     ("mountains", None),
     ("clouds/fair-cumulus", None),
-    ("clouds/sunset", None),
     ("airliner", Some(20.0)),
     ("fog/valley-morning", None),
 ];
@@ -60,17 +59,28 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("Quality {quality}, {}x{} pixels, {} ({}).\n", SIZE.0, SIZE.1, info.name, info.driver_version);
     clear_sky(settings)?;
     let names: Vec<_> = EFFECTS.iter().map(|(name, _)| *name).collect();
-    println!("\n| scene | {} | first picture | sun moves |", names.join(" | "));
-    println!("|---|{}", "---|".repeat(names.len() + 2));
+    println!("\n| scene | {} | first picture | sun moves | all on | share |", names.join(" | "));
+    println!("|---|{}", "---|".repeat(names.len() + 4));
+    // One for all scenes: what no scene changes, such as the noise of clouds, it computes once.
+    let mut everything_on = Renderer::new(&DeviceRequest::default())?;
     for (name, view_deg) in SCENES {
         let scene = read(name, view_deg)?;
+        let mut alone = Renderer::new(&DeviceRequest::default())?;
+        let first = first_picture(&mut alone, &scene, settings)?;
         let forced = Settings { skipping: Skipping::NONE, ..settings };
-        let [own, all] = measure([(scene.clone(), settings), (everything(&scene), forced)])?;
-        let cells: Vec<_> = EFFECTS.iter().map(|(_, passes)| cell(&own, passes)).collect();
+        let all_scene = everything(&scene);
+        everything_on.compute(&all_scene, forced, OUTPUTS)?;
+        let [own, all] = moving([(&mut alone, scene.clone(), settings), (&mut everything_on, all_scene, forced)])?;
+        let cells: Vec<_> = EFFECTS.iter().map(|(_, passes)| cell(&first, &own.plan, passes)).collect();
         let view = view_deg.map_or(String::new(), |deg| format!(", looking up {deg}°"));
-        let pair = |own: f64, all: f64| format!("{own:.0} of {all:.0} ms: {:.2}", own / all);
-        let (first, moving) = (pair(own.first_ms(), all.first_ms()), pair(own.moving_ms, all.moving_ms));
-        println!("| {name}{view} | {} | {first} | {moving} |", cells.join(" | "));
+        let first_ms: f64 = first.milliseconds.values().sum();
+        let share = own.milliseconds / all.milliseconds;
+        println!(
+            "| {name}{view} | {} | {first_ms:.0} ms | {:.1} ms | {:.0} ms | {share:.3} |",
+            cells.join(" | "),
+            own.milliseconds,
+            all.milliseconds
+        );
     }
     Ok(())
 }
@@ -95,47 +105,38 @@ fn everything(scene: &Scene) -> Scene {
     })
 }
 
-/// What frames of a scene cost.
-struct Cost {
-    /// All tables and a picture, with shaders that were compiled before.
-    first: Timings,
-    /// The plan of a later frame, whose light has moved by a hundredth of a degree.
-    later: Plan,
-    /// The median processor time of such a frame, ms.
-    moving_ms: f64,
+/// All tables and a picture, with shaders that were compiled before: the driver compiles them when it first runs them.
+fn first_picture(renderer: &mut Renderer, scene: &Scene, settings: Settings) -> Result<Timings, Box<dyn Error>> {
+    renderer.compute(scene, settings, OUTPUTS)?;
+    renderer.forget();
+    Ok(renderer.compute(scene, settings, OUTPUTS)?)
 }
 
-impl Cost {
-    fn first_ms(&self) -> f64 {
-        self.first.milliseconds.values().sum()
-    }
+/// Frames between which the first light moves by a hundredth of a degree.
+struct Moving {
+    /// The last one's plan.
+    plan: Plan,
+    /// The median of their processor time, ms.
+    milliseconds: f64,
 }
 
-/// Of several scenes and settings, frame by frame in turn, each on a renderer of its own.
-fn measure<const KINDS: usize>(kinds: [(Scene, Settings); KINDS]) -> Result<[Cost; KINDS], Box<dyn Error>> {
-    let mut all = Vec::new();
-    for (scene, settings) in kinds {
-        let mut renderer = Renderer::new(&DeviceRequest::default())?;
-        // The driver compiles shaders when it first runs them.
-        renderer.compute(&scene, settings, OUTPUTS)?;
-        renderer.forget();
-        let first = renderer.compute(&scene, settings, OUTPUTS)?;
-        all.push((renderer, scene, settings, first, Vec::new()));
-    }
-    let mut later = Vec::new();
+/// Of several scenes that have been rendered before, frame by frame in turn.
+fn moving<const KINDS: usize>(
+    mut kinds: [(&mut Renderer, Scene, Settings); KINDS],
+) -> Result<[Moving; KINDS], Box<dyn Error>> {
+    let (mut times, mut plans) = ([(); KINDS].map(|()| Vec::new()), Vec::new());
     for _ in 0..ROUNDS {
-        later.clear();
-        for (renderer, scene, settings, _, times) in &mut all {
+        plans.clear();
+        for ((renderer, scene, settings), times) in kinds.iter_mut().zip(&mut times) {
             lift(scene);
             let stopwatch = Stopwatch::start();
-            let timings = renderer.compute(scene, *settings, OUTPUTS)?;
+            plans.push(renderer.compute(scene, *settings, OUTPUTS)?.plan);
             times.push(stopwatch.processor_ms());
-            later.push(timings.plan);
         }
     }
-    let costs = all.into_iter().zip(later);
-    let costs = costs.map(|((.., first, times), later)| Cost { first, later, moving_ms: median(times) });
-    costs.collect::<Vec<_>>().try_into().map_err(|_| "as many costs as kinds".into())
+    let all = plans.into_iter().zip(times.map(median));
+    let all: Vec<_> = all.map(|(plan, milliseconds)| Moving { plan, milliseconds }).collect();
+    all.try_into().map_err(|_| "as many kinds as were given".into())
 }
 
 /// Moves the first light by a hundredth of a degree.
@@ -188,15 +189,15 @@ fn median(mut times: Vec<f64>) -> f64 {
 }
 
 /// What becomes of an effect's passes in a scene's first frame, and in later ones.
-fn cell(cost: &Cost, passes: &[&str]) -> String {
+fn cell(first: &Timings, later: &Plan, passes: &[&str]) -> String {
     let is_mine = |name: &str| passes.iter().any(|pass| name.starts_with(pass));
     let has = |plan: &Plan, decision| plan.passes.iter().any(|pass| is_mine(pass.name) && pass.decision == decision);
-    if !has(&cost.first.plan, Decision::Run) {
+    if !has(&first.plan, Decision::Run) {
         return "skip".to_owned();
     }
-    let milliseconds: f64 =
-        cost.first.milliseconds.iter().filter(|(name, _)| is_mine(name)).map(|(_, milliseconds)| milliseconds).sum();
-    let bytes: u64 = cost.first.plan.passes.iter().filter(|pass| is_mine(pass.name)).map(|pass| pass.bytes).sum();
-    let then = if has(&cost.later, Decision::Run) { "run" } else { "reuse" };
+    let times = first.milliseconds.iter().filter(|(name, _)| is_mine(name));
+    let milliseconds: f64 = times.map(|(_, milliseconds)| milliseconds).sum();
+    let bytes: u64 = first.plan.passes.iter().filter(|pass| is_mine(pass.name)).map(|pass| pass.bytes).sum();
+    let then = if has(later, Decision::Run) { "run" } else { "reuse" };
     format!("run {milliseconds:.1} ms, {:.1} MB; then {then}", bytes as f64 / 1e6)
 }

@@ -33,7 +33,7 @@ fn main() -> ExitCode {
     };
 
     let lights = difference(&mut both[0], Skipping::USUAL, scenes, SEED);
-    let wrong = WRONG_ABOUT_LIGHTS.map(|rules| difference(&mut both[0], rules, scenes / 3, SEED).0);
+    let wrong = WRONG_ABOUT_LIGHTS.map(|rules| difference(&mut both[0], rules, scenes, SEED).0);
     row("faint lights, narrow and high discs", lights, LIGHTS_BOUND, &wrong);
     for (effect, name) in [
         (None, "air out of the picture"),
@@ -42,17 +42,16 @@ fn main() -> ExitCode {
     ] {
         let views = difference_in_views(&mut both, effect, Skipping::USUAL, scenes, SEED);
         let wrong = wrong_about_views(effect).into_iter();
-        let wrong: Vec<_> =
-            wrong.map(|rules| difference_in_views(&mut both, effect, rules, scenes / 3, SEED).0).collect();
+        let wrong: Vec<_> = wrong.map(|rules| difference_in_views(&mut both, effect, rules, scenes, SEED).0).collect();
         row(name, views, BOUND, &wrong);
     }
     let thin = difference_in_thin_air(&mut both, Skipping::USUAL, scenes, SEED);
     let careless = Skipping { thin_share: 1.0, ..Skipping::USUAL };
-    let wrong = difference_in_thin_air(&mut both, careless, scenes / 3, SEED).0;
+    let wrong = difference_in_thin_air(&mut both, careless, scenes, SEED).0;
     row("light scattered more than once in thin air", thin, BOUND, &[wrong]);
     let lag = difference_of_lag(&mut both, Skipping::IN_SEQUENCE, scenes, SEED);
     let careless = Skipping { lag_share: 20.0 * BOUND, ..Skipping::IN_SEQUENCE };
-    let wrong = difference_of_lag(&mut both, careless, scenes / 3, SEED).0;
+    let wrong = difference_of_lag(&mut both, careless, scenes, SEED).0;
     row("tables that lag behind the sun", lag, BOUND, &[wrong]);
     if is_held { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

@@ -50,7 +50,9 @@ fn main() -> ExitCode {
     std::fs::create_dir(folder.path().join("config")).expect("a folder");
     write("config/window.json", "{\"size\": [640, 400], \"quality\": \"low\", \"truth_scale\": 0.05}");
     write("scene.toml", SCENE);
-    let program = desktop.open(folder.path(), "scene.toml");
+    let program = desktop.open_with(folder.path(), "scene.toml", |command| {
+        command.env("WELKIN_CONFIG", folder.path().join("config")).env("WELKIN_LOG", "welkin::window::sky=debug");
+    });
     let started = Instant::now();
     let mut samples = Vec::new();
     let mut rounds = 0;
@@ -64,7 +66,13 @@ fn main() -> ExitCode {
         }
         rounds += 1;
         samples.push(program.memory_kib());
-        println!("{:7.1} s, round {rounds}: {} MiB", started.elapsed().as_secs_f64(), program.memory_kib() / 1024);
+        let said = program.stderr.text();
+        let device = said.lines().rev().find_map(|line| line.split_once("DEBUG ")).map_or("", |(_, said)| said);
+        println!(
+            "{:7.1} s, round {rounds}: {} MiB; {device}",
+            started.elapsed().as_secs_f64(),
+            program.memory_kib() / 1024
+        );
     }
     program.key("ctrl+q");
     let code = program.exit_code();

@@ -6,9 +6,10 @@ use welkin_shaders::{Definitions, ShaderError};
 
 use super::ShaderSources;
 
-/// Pipelines that are kept. A picture takes some ten in clear air and some thirty with everything in it, and a driver may keep
-/// some megabytes for each: one can go back and forth between two or three qualities of a sky and nothing is compiled twice.
-pub const MOST_KEPT: usize = 40;
+/// Pipelines that are kept. A picture takes some ten in clear air and some thirty with everything in it; every quality, a few
+/// sizes of the window and a few scenes are compiled once. Fewer would have drivers compile the same again and again, and what
+/// their compilers leave between what is in use costs more memory than the pipelines.
+pub const MOST_KEPT: usize = 256;
 
 /// The pipelines of all passes, each by the definitions that make a difference to it. When a recording begins and there are
 /// more than [`MOST_KEPT`], those that were used longest ago are let go, but never one that the recording before has used.

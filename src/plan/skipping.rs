@@ -27,7 +27,7 @@ impl Skipping {
     pub const USUAL: Self = Self {
         faint_share: 1e-4,
         unseen_depressions: 1.0,
-        narrowest_disc_rad: 0.1 * std::f64::consts::PI / 180.0,
+        narrowest_disc_rad: 0.02 * std::f64::consts::PI / 180.0,
         beam_above_radii: 3.75,
         out_of_view_share: 1.0,
         hidden_depth: 18.0,

@@ -198,7 +198,7 @@ impl ApplicationHandler<Event> for App {
             Event::Sky(News::Failed(problem)) => open.session.fault(PICTURE_FAULT, problem),
             Event::Measured(load, step, times) => open.session.chooser.learn(load, step, times),
             Event::Said(tone, text) => open.session.say(tone, text),
-            Event::Changed(Changed::Scene) => open.reload(),
+            Event::Changed(Changed::Scene) => open.reload(false),
             Event::Changed(Changed::Shaders) => open.take_shaders(),
             Event::Shaders(result) => open.shaders_taken(result),
             Event::NoTruth(number, problem) => {

@@ -57,7 +57,7 @@ pub fn scene(name: &str) -> Scene {
 }
 
 /// Two lights of any brightness, width and place around the horizon, seen from anywhere between the ground and space.
-fn random_scene(random: &mut Pcg64Mcg) -> Scene {
+pub fn random_scene(random: &mut Pcg64Mcg) -> Scene {
     let mut uniform = |low: f64, high: f64| low + (high - low) * f64::from(random.next_u32()) * 0.5_f64.powi(32);
     let mut scene = scene("noon");
     (scene.camera.width, scene.camera.height) = (8, 6);
@@ -102,7 +102,7 @@ pub fn difference(renderer: &mut Renderer, skipping: Skipping, scenes: usize, se
 }
 
 /// Tables so small that a frame costs next to nothing; all passes are the same.
-fn tiny(skipping: Skipping) -> Settings {
+pub fn tiny(skipping: Skipping) -> Settings {
     let low = Settings::of(Quality::Low);
     Settings {
         nodes_per_leg: 4,
@@ -128,7 +128,7 @@ fn tiny(skipping: Skipping) -> Settings {
 }
 
 /// A view from anywhere between the ground and space, of mountains, clouds or air that may be out of it, or deep in haze.
-fn random_view(random: &mut Pcg64Mcg, effect: Option<Effect>) -> Scene {
+pub fn random_view(random: &mut Pcg64Mcg, effect: Option<Effect>) -> Scene {
     let mut uniform = |low: f64, high: f64| low + (high - low) * f64::from(random.next_u32()) * 0.5_f64.powi(32);
     let mut scene = scene("noon");
     (scene.camera.width, scene.camera.height) = (16, 9);
@@ -254,7 +254,7 @@ fn random_thin_air(random: &mut Pcg64Mcg) -> Scene {
 }
 
 /// Of a pixel and a band, relative.
-fn largest_difference(all: &Frame, some: &Frame) -> f64 {
+pub fn largest_difference(all: &Frame, some: &Frame) -> f64 {
     let pixels = all.radiance.as_flattened().iter().zip(some.radiance.as_flattened());
     pixels.map(|(all, some)| f64::from((all - some).abs()) / (f64::from(*all) + DARKNESS)).fold(0.0, f64::max)
 }

@@ -27,7 +27,7 @@ impl Open {
             Action::Escape if session.help => session.help = false,
             Action::Escape => self.full_screen(false),
             Action::Save => session.save(PathBuf::from(&session.save_name)),
-            Action::Reload => self.reload(),
+            Action::Reload => self.reload(true),
             Action::Undo => session.travel(true),
             Action::Redo => session.travel(false),
             Action::Screenshot => self.screenshot(pictures, proxy),
@@ -67,12 +67,12 @@ impl Open {
         self.window.set_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
     }
 
-    /// Reads the scene's file again; a broken one changes nothing.
-    pub(super) fn reload(&mut self) {
+    /// Reads the scene's file again, which gives up edits where somebody has asked for it; a broken one changes nothing.
+    pub(super) fn reload(&mut self, asked: bool) {
         let path = self.session.document.path().to_owned();
         let opened = match std::fs::read_to_string(&path) {
             // What was saved here comes back as a change of the file.
-            Ok(text) if self.session.document.is_saved_as(&text) => return,
+            Ok(text) if !asked && self.session.document.is_saved_as(&text) => return,
             Ok(text) => self.session.open(&text, &path).map_err(|error| error.to_string()),
             Err(error) => Err(format!("cannot read '{}': {error}", path.display())),
         };
