@@ -16,8 +16,9 @@
 
 // Depth in the shadow at which the estimate counts in full, over the height of the air: 4 km on Earth.
 const FULL_DEPTH: f32 = 0.04;
-// ln of the least share that is told from none.
-const LEAST_LN: f32 = -60.0;
+// ln of the least share that is told from none. Not less: where the middle of a disc leaves nothing lit its upper rim may, and
+// that over next to nothing would be a peak that interpolation spreads.
+const LEAST_LN: f32 = -16.0;
 
 // How much the estimate counts for a light, in [0, 1].
 fn strength(light: u32) -> f32 {
