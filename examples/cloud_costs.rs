@@ -8,7 +8,10 @@
 //! - *followed*: as a frame of a sequence, over every pixel marched;
 //! - *nothing skipped*: empty space in the layers is marched through, over the same with skipping;
 //! - *light marched*: 32 points towards a light for every sample in place of the cached depths, over the same with them;
-//! - *light anew*: the passes that make cached light, once, over a frame in which every pixel is marched.
+//! - *light anew*: the passes that make cached light, from nothing, over a frame in which every pixel is marched;
+//! - *light following*: the same in a frame of a sequence in which clouds and sun move, the mean over as many frames as rounds;
+//! - *brute force*: 64 steps through the layer, six looks at the field towards the light from each, eight octaves, every pixel
+//!   and nothing skipped, over a followed frame.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -16,9 +19,9 @@ use std::path::Path;
 use clap::Parser;
 use welkin::gpu::{DeviceRequest, Gpu};
 use welkin::passes::ShaderSources;
-use welkin::plan::{CloudSettings, Decision, Outputs, Quality, Settings};
+use welkin::plan::{CloudScattering, CloudSettings, Decision, Outputs, Quality, Settings};
 use welkin::renderer::{Rendered, Renderer};
-use welkin::scene::Scene;
+use welkin::scene::{Light, Scene};
 
 #[derive(Parser)]
 struct Arguments {
@@ -46,6 +49,14 @@ fn without_skipping() -> ShaderSources {
     assert!(text.contains(head), "the skipping of empty space has changed");
     let text = text.replace(head, &format!("{head}    if true {{ return 0.0; }}\n"));
     ShaderSources::embedded().with("cloud_skip.wgsl", Cow::Owned(text))
+}
+
+/// Those that take 64 equal steps through a layer as well.
+fn brute_force() -> ShaderSources {
+    let text = include_str!("../shaders/wgsl/clouds.wgsl");
+    let step = text.lines().find(|line| line.contains("let step_m = min(min(growth")).expect("the march has changed");
+    let text = text.replace(step, "        let step_m = min((boundary_m - entered_m) / 64.0, boundary_m - t_m);");
+    without_skipping().with("clouds.wgsl", Cow::Owned(text))
 }
 
 /// One way to render.
@@ -95,25 +106,47 @@ fn of_light(name: &str) -> bool {
     name == "cloud_density" || name == "cloud_light" || name.starts_with("ordinates")
 }
 
+/// A frame later: clouds that drift with 10 m/s, and a sun that goes round in a day, ten times as fast.
+fn moved(scene: &Scene, round: u32) -> Scene {
+    let mut frame = scene.clone();
+    frame.time_s += f64::from(round) / 24.0;
+    for light in &mut frame.lights {
+        if let Light::Directional(light) = light {
+            light.direction.elevation_rad += 10.0 * frame.time_s * std::f64::consts::TAU / 86_400.0;
+        }
+    }
+    frame
+}
+
 fn main() {
     let arguments = Arguments::parse();
     let mut scene = Scene::read(Path::new(&arguments.scene)).unwrap_or_else(|error| panic!("{error}"));
     (scene.camera.width, scene.camera.height) = (arguments.width, arguments.width * 9 / 16);
+    for layer in &mut scene.clouds {
+        layer.wind_m_per_s = [10.0, 0.0];
+    }
     println!("{}, {} x {} pixels\n", scene.name, scene.camera.width, scene.camera.height);
-    println!("| quality | every pixel, ms | followed | nothing skipped | light marched | light anew |");
-    println!("|---|---|---|---|---|---|");
+    println!(
+        "| quality | every pixel, ms | followed | nothing skipped | light marched | light anew | light following | brute force |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
     let qualities = if arguments.qualities.is_empty() { &Quality::ALL[..] } else { &arguments.qualities };
     let mut memory = Vec::new();
     for &quality in qualities {
         let whole = CloudSettings { max_steps: MANY_STEPS, ..CloudSettings::of(quality) };
         let marched = CloudSettings { near_samples: 32, ..whole };
+        let brute = CloudSettings { scattering: CloudScattering::OctavesAsShipped, near_samples: 6, ..whole };
         let embedded = ShaderSources::embedded;
         let mut ways = [
             Way::new(quality, embedded(), whole, false),
             Way::new(quality, embedded(), whole, true),
             Way::new(quality, without_skipping(), whole, false),
             Way::new(quality, embedded(), marched, false),
+            Way::new(quality, brute_force(), brute, false),
         ];
+        let mut following = Way::new(quality, embedded(), whole, true);
+        following.render(&scene);
+        let mut following_ms = 0.0;
         // The first frames make noise and light, and a sequence's is whole.
         let first = ways.each_mut().map(|way| way.render(&scene));
         let light_ms = time(&first[0], of_light);
@@ -124,14 +157,18 @@ fn main() {
                 let rendered = way.render(&frame);
                 way.milliseconds.push(time(&rendered, of_pixels));
             }
+            let moved = following.render(&moved(&scene, round));
+            following_ms += time(&moved, of_light) / f64::from(arguments.rounds);
         }
-        let [every, followed, unskipped, marched] = ways.each_ref().map(Way::median);
+        let [every, followed, unskipped, marched, brute] = ways.each_ref().map(Way::median);
         println!(
-            "| {quality} | {every:.0} | {:.2} | {:.2} | {:.2} | {:.2} |",
+            "| {quality} | {every:.0} | {:.3} | {:.2} | {:.2} | {:.2} | {:.3} | {:.1} |",
             followed / every,
             unskipped / every,
             marched / every,
-            light_ms / every
+            light_ms / every,
+            following_ms / every,
+            brute / followed,
         );
         let sequence = ways[1].render(&scene).timings.plan;
         let kept = sequence.passes.into_iter().filter(|pass| pass.decision != Decision::Skip);

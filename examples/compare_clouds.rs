@@ -45,6 +45,21 @@ struct Arguments {
     /// Where to write what was rendered.
     #[arg(long)]
     pictures: Option<PathBuf>,
+    /// Other grids for the ordinates than the quality's: edge of the smallest cells, m; cells across; sweeps.
+    #[arg(long, num_args = 3, value_names = ["METRES", "CELLS", "SWEEPS"])]
+    grid: Option<Vec<u32>>,
+}
+
+impl Arguments {
+    fn clouds(&self, quality: Quality, scattering: CloudScattering) -> CloudSettings {
+        let preset = CloudSettings { scattering, ..CloudSettings::of(quality) };
+        match self.grid.as_deref() {
+            Some(&[ordinate_cell_m, ordinate_cells, sweeps]) => {
+                CloudSettings { ordinate_cell_m, ordinate_cells, sweeps, ..preset }
+            }
+            _ => preset,
+        }
+    }
 }
 
 /// A scene with what the path tracer sees of it.
@@ -228,7 +243,7 @@ fn main() {
     for case in &cases {
         for &quality in &arguments.qualities {
             for scattering in CloudScattering::ALL.into_iter().filter(chosen) {
-                let clouds = CloudSettings { scattering, ..CloudSettings::of(quality) };
+                let clouds = arguments.clouds(quality, scattering);
                 let settings = Settings { clouds, ..Settings::of(quality) };
                 let outputs = Outputs { capture: true, picture: false };
                 let rendered =

@@ -7,10 +7,10 @@ use std::path::Path;
 use glam::DVec3;
 use welkin::foreground::{Depth, Foreground};
 use welkin::gpu::{DeviceRequest, Validation};
-use welkin::plan::{CloudScattering, CloudSettings, Decision, Outputs, Plan, Quality, Settings};
+use welkin::plan::{CloudScattering, CloudSettings, Decision, Outputs, Plan, Quality, Settings, Skipping};
 use welkin::reference::{World, transport};
 use welkin::renderer::{Rendered, Renderer};
-use welkin::scene::Scene;
+use welkin::scene::{Light, Scene};
 
 const CAPTURE: Outputs = Outputs { capture: true, picture: false };
 
@@ -237,4 +237,38 @@ fn hills_lie_in_the_clouds_shade() {
     let [clear, overcast] = [mean(&frames[0]), mean(&frames[1])];
     // A sheet of optical depth 10 and more leaves between a twentieth and three fifths of the light.
     assert!(overcast < 0.6 * clear && overcast > 0.05 * clear, "{clear} {overcast}");
+}
+
+#[test]
+fn light_in_clouds_follows_the_sun_in_a_few_sweeps_and_settles_when_it_rests() {
+    let clouds = CloudSettings { block: 1, sweeps: 12, warm_sweeps: 2, ..settings().clouds };
+    // The sky's tables do not lag, so that nothing but the clouds is late.
+    let skipping = Skipping { lag_share: 0.0, ..settings().skipping };
+    let settings = Settings { clouds, skipping, ..settings() };
+    let scene = day("[[clouds]]\nkind = \"stratocumulus\"\nwind_m_per_s = [8, 3]\n");
+    // 0.2° a frame, and then nothing.
+    let frame = |i: u32| {
+        let mut frame = scene.clone();
+        frame.time_s = f64::from(i.min(8)) / 24.0;
+        if let Light::Directional(sun) = &mut frame.lights[0] {
+            sun.direction.elevation_rad += 0.2_f64.to_radians() * f64::from(i.min(8));
+        }
+        frame
+    };
+    let scenes: Vec<_> = (0..17).map(frame).collect();
+    let next: Vec<_> = with_renderer(|renderer| {
+        scenes.iter().map(|scene| renderer.render_next(scene, settings, CAPTURE).unwrap()).collect()
+    });
+    let [first, last] = &render(&[scenes[0].clone(), scenes[8].clone()], settings)[..] else { unreachable!() };
+    let pass = |i: usize| next[i].timings.plan.passes.iter().find(|pass| pass.name == "ordinates_sweep").unwrap();
+    assert!(pass(0).reason.contains("12 sweeps"), "{}", pass(0).reason);
+    let (runs, reuses): (Vec<_>, Vec<_>) = (1..9).partition(|&i| pass(i).decision == Decision::Run);
+    assert!(runs.iter().all(|&i| pass(i).reason.contains("2 sweeps")) && !runs.is_empty() && !reuses.is_empty());
+    // The field may lag behind by a quarter of a degree of 1.6°, and by what two sweeps leave of each change.
+    let (error, moved) = (difference(&next[8], last), difference(first, last));
+    assert!(error < 0.25 * moved, "{error} of {moved}");
+    // At rest as many sweeps follow as from darkness.
+    let settled = difference(&next[16], last);
+    assert!(settled < 0.2 * error.max(1e-4) + 1e-3, "{settled} of {error}");
+    assert_eq!(pass(16).decision, Decision::Reuse);
 }

@@ -1,12 +1,14 @@
 //! The light field that the passes find in a voxel cloud.
 
 use std::error::Error;
+use std::f64::consts::PI;
+use std::path::Path;
 
 use glam::{DVec3, UVec3};
 use welkin::gpu::{DeviceRequest, Gpu};
-use welkin::passes::Resources;
 use welkin::passes::ordinates::coefficients::{forward_share, reduced_cosine};
 use welkin::passes::ordinates::{Directions, Grid, Level, Problem, Sides, Start, Volumes};
+use welkin::passes::{Resources, ShaderSources};
 use welkin::reference::{DensityField, GridField};
 use welkin_lut::PhaseFunction;
 
@@ -14,6 +16,9 @@ use super::fields::extent_m;
 
 /// Iterations from darkness; twice as many change no field here by a per cent.
 const SWEEPS: u32 = 120;
+
+/// Fine texels along a cell's edge, as for scenes.
+const REFINEMENT: u32 = 2;
 
 /// A device on which fields are solved.
 pub struct Solver(Resources);
@@ -29,10 +34,10 @@ pub struct Method {
 pub struct LightField {
     size: UVec3,
     cell_m: DVec3,
-    /// [sun, sky] of each cell: (I1, I0) times its weight.
-    moments: Vec<[[f64; 4]; 2]>,
-    /// `weight_of` of `ordinates_grid.wgsl`.
-    weights: Vec<f64>,
+    /// [sun, sky, beam] of each fine texel, times its weight, as `ordinates_moments.wgsl` says.
+    moments: Vec<[[f64; 4]; 3]>,
+    /// Extinction of each fine texel.
+    extinction: Vec<f64>,
     /// f and g'.
     pub forward_share: f64,
     reduced_cosine: f64,
@@ -40,7 +45,16 @@ pub struct LightField {
 
 impl Solver {
     pub fn new() -> Result<Self, Box<dyn Error>> {
-        Ok(Self(Resources::new(Gpu::new(&DeviceRequest::default())?)?))
+        Self::with_shaders(None)
+    }
+
+    /// With the shaders of a folder in place of the built-in ones.
+    pub fn with_shaders(folder: Option<&String>) -> Result<Self, Box<dyn Error>> {
+        let shaders = match folder {
+            Some(folder) => ShaderSources::from_directory(Path::new(folder))?,
+            None => ShaderSources::embedded(),
+        };
+        Ok(Self(Resources::with_shaders(Gpu::new(&DeviceRequest::default())?, shaders)?))
     }
 
     /// Fills the grid with the cloud's extinction and solves.
@@ -55,18 +69,18 @@ impl Solver {
         let cell_m = extent_m() / size.as_dvec3();
         let levels = vec![Level { lowest_m: DVec3::ZERO, cell_m, size }];
         let problem = Problem {
-            grid: Grid { levels, sides: Sides::Clear, refinement: 2 },
+            grid: Grid { levels, sides: Sides::Clear, refinement: REFINEMENT },
             directions: method.directions,
             toward_sun,
             albedo: 1.0,
             reduced_cosine: reduced_cosine(phase),
             ground_albedo: 0.0,
         };
-        let extinction = means(cloud, size * 2, cell_m / 2.0, 1.0 - forward_share(phase));
+        let extinction = means(cloud, size * REFINEMENT, cell_m / f64::from(REFINEMENT), 1.0 - forward_share(phase));
         self.relax(&problem, &extinction, phase, SWEEPS)
     }
 
-    /// A homogeneous slab of thickness 1 m and an optical depth, in rows of cells that nothing crosses sideways.
+    /// A homogeneous slab of thickness 1 m and an optical depth that goes on to all sides, in rows of cells 1 m wide.
     pub fn slab(
         &mut self,
         depth: f64,
@@ -74,17 +88,17 @@ impl Solver {
         phase: &PhaseFunction,
         rows: u32,
     ) -> Result<LightField, Box<dyn Error>> {
-        let (size, cell_m) = (UVec3::new(1, 1, rows), DVec3::new(1e6, 1e6, 1.0 / f64::from(rows)));
+        let (size, cell_m) = (UVec3::new(1, 1, rows), DVec3::new(1.0, 1.0, 1.0 / f64::from(rows)));
         let levels = vec![Level { lowest_m: DVec3::ZERO, cell_m, size }];
         let problem = Problem {
-            grid: Grid { levels, sides: Sides::Periodic, refinement: 1 },
+            grid: Grid { levels, sides: Sides::Periodic, refinement: REFINEMENT },
             directions: Directions::Sixteen,
             toward_sun,
             albedo: 1.0,
             reduced_cosine: reduced_cosine(phase),
             ground_albedo: 0.0,
         };
-        let extinction = vec![(depth * (1.0 - forward_share(phase))) as f32; rows as usize];
+        let extinction = vec![(depth * (1.0 - forward_share(phase))) as f32; 8 * rows as usize];
         self.relax(&problem, &extinction, phase, 40 * rows)
     }
 
@@ -107,15 +121,14 @@ impl Solver {
         commands.submit_and_wait()?;
         let image = |name| resources.existing_image(name).ok_or("solved");
         let read = |name| -> Result<Vec<[u16; 4]>, Box<dyn Error>> { Ok(resources.gpu.read_image(image(name)?)?) };
-        let (sun, sky) = (read("ordinates_sunlight")?, read("ordinates_skylight")?);
-        let source: Vec<[f32; 4]> = resources.gpu.read_image(image("ordinates_source")?)?;
+        let (sun, sky, beam) = (read("ordinates_sunlight")?, read("ordinates_skylight")?, read("ordinates_beam")?);
         let wide = |texel: &[u16; 4]| texel.map(|bits| f64::from(half::f16::from_bits(bits)));
         let level = problem.grid.levels[0];
         Ok(LightField {
             size: level.size,
             cell_m: level.cell_m,
-            moments: sun.iter().zip(&sky).map(|(a, b)| [wide(a), wide(b)]).collect(),
-            weights: source.iter().map(|cell| 100.0 * f64::from(cell[0]) + 1e-3).collect(),
+            moments: sun.iter().zip(&sky).zip(&beam).map(|((a, b), c)| [wide(a), wide(b), wide(c)]).collect(),
+            extinction: extinction.iter().map(|&e| f64::from(e)).collect(),
             forward_share: forward_share(phase),
             reduced_cosine: reduced_cosine(phase),
         })
@@ -140,25 +153,34 @@ fn means(cloud: &GridField, size: UVec3, texel_m: DVec3, share: f64) -> Vec<f32>
 }
 
 impl LightField {
-    /// Light scattered towards a view ray's observer by the similar medium, per unit of its scattering: sun and sky.
-    pub fn scattered(&self, place_m: DVec3, direction: DVec3) -> [f64; 2] {
-        let cells = (place_m / self.cell_m - 0.5).clamp(DVec3::ZERO, self.size.as_dvec3() - 1.0);
-        let low = cells.as_uvec3();
-        let share = cells - low.as_dvec3();
-        let (mut sum, mut weights) = ([[0.0; 4]; 2], 0.0);
-        for i in 0..8_u32 {
-            let corner = UVec3::new(i & 1, i >> 1 & 1, i >> 2);
-            let cell = (low + corner).min(self.size - 1);
-            let side = |c: u32, s: f64| if c == 1 { s } else { 1.0 - s };
-            let weight = side(corner.x, share.x) * side(corner.y, share.y) * side(corner.z, share.z);
-            let index = (cell.x + self.size.x * (cell.y + self.size.y * cell.z)) as usize;
-            let texel = &self.moments[index];
-            weights += weight * self.weights[index];
-            for (s, t) in sum.iter_mut().flatten().zip(texel.iter().flatten()) {
-                *s += weight * t;
-            }
-        }
+    /// Light scattered towards a view ray's observer by the similar medium, per unit of its scattering: sun and sky; the
+    /// sun's beam is dimmed to a share. As `ordinates_light.wgsl` has it.
+    pub fn scattered(&self, place_m: DVec3, direction: DVec3, beam: f64) -> [f64; 2] {
+        let at = place_m / self.cell_m;
+        let (fine, at) = (self.size * REFINEMENT, at * f64::from(REFINEMENT));
+        let [fine_extinction] = interpolate(fine, at, |index| [self.extinction[index]]);
+        let [sun, sky, falling] = [0, 1, 2].map(|of| interpolate(fine, at, |index| self.moments[index][of]));
         let light = |[x, y, z, mean]: [f64; 4]| mean - self.reduced_cosine * direction.dot(DVec3::new(x, y, z));
-        sum.map(|moments| (light(moments) / weights).max(0.0))
+        let [x, y, z, mean] = falling;
+        let taken = -3.0 * beam / (4.0 * PI) * light([-x, -y, -z, mean]);
+        let weight = 100.0 * fine_extinction + 1e-3;
+        [((light(sun) + taken) / weight).max(0.0), (light(sky) / weight).max(0.0)]
     }
+}
+
+/// Between the centres of texels, at a place in texels from the lowest corner.
+fn interpolate<const N: usize>(size: UVec3, at: DVec3, texel: impl Fn(usize) -> [f64; N]) -> [f64; N] {
+    let at = (at - 0.5).clamp(DVec3::ZERO, size.as_dvec3() - 1.0);
+    let low = at.as_uvec3();
+    let share = at - low.as_dvec3();
+    let mut sum = [0.0; N];
+    for i in 0..8_u32 {
+        let corner = UVec3::new(i & 1, i >> 1 & 1, i >> 2);
+        let cell = (low + corner).min(size - 1);
+        let side = |c: u32, s: f64| if c == 1 { s } else { 1.0 - s };
+        let weight = side(corner.x, share.x) * side(corner.y, share.y) * side(corner.z, share.z);
+        let found = texel((cell.x + size.x * (cell.y + size.y * cell.z)) as usize);
+        sum.iter_mut().zip(found).for_each(|(sum, value)| *sum += weight * value);
+    }
+    sum
 }

@@ -109,7 +109,7 @@ fn cases(solver: &mut Solver, sites: &[Site], phase: &PhaseFunction, walks: u64)
         for samples in views {
             for (sun, solved) in fields.iter().enumerate() {
                 let truth = truth(truth_folder(), cloud, phase, samples.view, walks)?;
-                let field = methods::field(samples, solved);
+                let field = methods::field(samples, sun, solved);
                 cases.push(Case { truth, samples: samples.clone(), sun, field });
             }
         }

@@ -4,10 +4,12 @@
 //! cargo run --release --example fit_cloud_lighting -- fit 256      # the numbers, for several phase functions
 //! cargo run --release --example fit_cloud_lighting -- table 768    # every method on clouds fitted and not fitted
 //! cargo run --release --example fit_cloud_lighting -- slabs        # reflectance of homogeneous slabs
+//! cargo run --release --example fit_cloud_lighting -- cells 64     # what the size of the cells costs
 //! ```
 //!
 //! The number is that of walks a pixel. Pictures of the path tracer are kept in `target/cloud-truth`, by content.
 
+mod cells;
 mod field;
 mod fields;
 mod fit;
@@ -48,6 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some("fit") => fit::run(walks),
         Some("table") => table::run(walks),
         Some("slabs") => slabs::run(),
-        _ => Err("the first argument must be 'fit', 'table' or 'slabs'".into()),
+        Some("cells") => cells::run(&mut field::Solver::with_shaders(arguments.get(2))?, walks),
+        _ => Err("the first argument must be 'fit', 'table', 'slabs' or 'cells'".into()),
     }
 }

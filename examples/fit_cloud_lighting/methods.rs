@@ -57,9 +57,9 @@ pub fn bands(samples: &Samples, sun: usize, phase: &PhaseFunction, attenuations:
 }
 
 /// What the solved field adds, along a view ray through the similar medium.
-pub fn field(samples: &Samples, field: &LightField) -> Vec<f64> {
+pub fn field(samples: &Samples, sun: usize, field: &LightField) -> Vec<f64> {
     let (d, q) = (samples.view.direction(), 1.0 - field.forward_share);
-    samples.picture(q, |point| q * field.scattered(point.place_m, d)[0])
+    samples.picture(q, |point| q * field.scattered(point.place_m, d, (-q * point.sun_depth[sun]).exp())[0])
 }
 
 /// The field of a slab in closed form (delta-Eddington), from the optical depths to both sides along the sun's line.

@@ -42,11 +42,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
     let mut solver = Solver::new()?;
     let phase = PhaseFunction::HenyeyGreenstein { g: 0.85 };
     println!("   tau   mu0  truth single oct-sun oct-both oct-fit  S16");
-    for row in csv::Reader::from_path("tests/reference/slab.csv")?.deserialize() {
-        let row: Row = row?;
-        if row.ssa != 1.0 || row.surface_albedo != 0.0 || row.phase != "hg_0.85" {
-            continue;
-        }
+    for row in open_rows()? {
         let slab = Slab { depth: row.tau, mu0: row.mu0, phase: &phase };
         let toward_sun = DVec3::new((1.0 - row.mu0 * row.mu0).sqrt(), 0.0, row.mu0);
         let field = solver.slab(row.tau, toward_sun, &phase, ROWS)?;
@@ -61,6 +57,34 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         println!("{:6} {:5} {:.4} {}", row.tau, row.mu0, row.reflectance, text.join(" "));
     }
     Ok(())
+}
+
+/// Prints what is wrong with the reflectances of thick, conservative slabs, in percent, where the field has few rows of
+/// cells.
+pub fn in_rows(solver: &mut Solver, phase: &PhaseFunction, rows: &[u32]) -> Result<(), Box<dyn Error>> {
+    println!("   tau   mu0  truth  error in percent with so many rows: {rows:?}");
+    for row in open_rows()? {
+        if row.tau < 4.0 || row.mu0 < 0.15 {
+            continue;
+        }
+        let slab = Slab { depth: row.tau, mu0: row.mu0, phase };
+        let toward_sun = DVec3::new((1.0 - row.mu0 * row.mu0).sqrt(), 0.0, row.mu0);
+        let mut error = |&rows: &u32| -> Result<String, Box<dyn Error>> {
+            let field = solver.slab(row.tau, toward_sun, phase, rows)?;
+            let found = slab.reflectance(|nu| bands(phase, nu), Some(&field));
+            Ok(format!("{:6.1}", 100.0 * (found / row.reflectance - 1.0)))
+        };
+        let errors: Vec<_> = rows.iter().map(&mut error).collect::<Result<_, _>>()?;
+        println!("{:6} {:5} {:.4} {}", row.tau, row.mu0, row.reflectance, errors.join(" "));
+    }
+    Ok(())
+}
+
+/// The open rows of conservative slabs over black ground.
+fn open_rows() -> Result<Vec<Row>, Box<dyn Error>> {
+    let rows: Vec<Row> = csv::Reader::from_path("tests/reference/slab.csv")?.deserialize().collect::<Result<_, _>>()?;
+    let is_ours = |row: &Row| row.ssa == 1.0 && row.surface_albedo == 0.0 && row.phase == "hg_0.85";
+    Ok(rows.into_iter().filter(is_ours).collect())
 }
 
 /// A phase function with the shares of the depths to the sun and along the view.
@@ -108,7 +132,7 @@ impl Slab<'_> {
                 let below = (i as f64 + 0.5) * step;
                 let place_m = DVec3::new(0.0, 0.0, 1.0 - below / self.depth);
                 let seen = (-q * below / mu).exp() * q * step / mu;
-                sum += seen * field.scattered(place_m, view)[0];
+                sum += seen * field.scattered(place_m, view, (-q * below / self.mu0).exp())[0];
             }
         }
         sum

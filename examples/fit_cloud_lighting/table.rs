@@ -98,7 +98,7 @@ fn pictures(samples: &Samples, sun: usize, phase: &PhaseFunction, fields: &[Ligh
     ];
     let bands = methods::bands(samples, sun, phase, band_attenuations(phase, 1.0));
     for ((name, _), field) in GRIDS.iter().zip(fields) {
-        pictures.push((format!("bands, {name}"), methods::sum(bands.clone(), &methods::field(samples, field))));
+        pictures.push((format!("bands, {name}"), methods::sum(bands.clone(), &methods::field(samples, sun, field))));
     }
     pictures
 }

@@ -116,11 +116,20 @@ fn step_radiance(
     var radiance = vec3<f32>(0.0);
 #ifdef CLOUD_ORDINATES
     let local_view = vec3<f32>(view.xy, dot(view, sample.up));
-    let solved = scattered_light(vec3<f32>(sample.map, sample.altitude_m), local_view, table_sampler);
+    let to_sun = depth_to_light(sample, ORDINATES_LIGHT);
+    let beam = exp(-matter.similarity * to_sun);
+    let solved = scattered_light(vec3<f32>(sample.map, sample.altitude_m), local_view, beam, table_sampler);
 #endif
     for (var light = 0u; light < LIGHT_COUNT; light++) {
         let mu_s = dot(sample.up, observer.lights[light].direction);
+#ifdef CLOUD_ORDINATES
+        var to_light = to_sun;
+        if light != ORDINATES_LIGHT {
+            to_light = depth_to_light(sample, light);
+        }
+#else
         let to_light = depth_to_light(sample, light);
+#endif
         var directional = 0.0;
         for (var k = 0u; k < TERM_COUNT; k++) {
             let a = cloud_terms[sample.layer * TERM_COUNT + k].attenuation;

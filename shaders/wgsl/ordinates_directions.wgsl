@@ -12,6 +12,9 @@ const RING_COUNT: u32 = 2u;
 const RING_COUNT: u32 = 1u;
 #endif
 const DIRECTION_COUNT: u32 = 8u * RING_COUNT;
+// Of each cell are kept its directions and, in three more slots, how light rises from its centre to its higher face along
+// each axis.
+const SLOT_COUNT: u32 = DIRECTION_COUNT + 3u;
 
 // The components of a ring's directions without their signs.
 fn ring_components(ring: u32) -> vec3<f32> {

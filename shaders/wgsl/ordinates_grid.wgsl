@@ -92,7 +92,7 @@ fn coordinates(place_m: vec3<f32>, level: u32, texture_size: vec3<f32>, texels_p
     return vec3<f32>(texels.xy, z) / texture_size;
 }
 
-// What a cell's light counts for between the centres of cells: light is scattered where there is cloud, and clear air
+// What a texel's light counts for between the centres of texels: light is scattered where there is cloud, and clear air
 // beside a bright edge must not darken it. In hundredths of 1/m, which half floats hold well, and a little everywhere.
 fn weight_of(extinction_per_m: f32) -> f32 {
     return 100.0 * extinction_per_m + 1e-3;

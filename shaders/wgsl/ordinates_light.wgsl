@@ -1,10 +1,10 @@
 #define_import_path welkin::ordinates_light
 // The light that the passes `ordinates_*` have found in clouds, for view rays.
 //
-//   let light = scattered_light(place_m, view, linear_sampler);
+//   let light = scattered_light(place_m, view, beam, linear_sampler);
 //   radiance += (light.x * sun_irradiance + light.y * sky_radiance) * albedo * q * int c e^(-q tau) ds
 //
-// with q = 1 - f of the droplets, c the true extinction and tau the true optical depth along the view so far. The sun's
+// with beam = e^(-q tau_sun), q = 1 - f of the droplets, c the true extinction and tau the true optical depth along the view so far. The sun's
 // light that was scattered by small angles only is not part of it: add the bands of passes::ordinates::coefficients.
 //
 // Light of the sky behind the clouds that droplets scatter by small angles only is neither: where the background is a
@@ -12,20 +12,26 @@
 //
 // Legend and definitions: those of welkin::ordinates_grid.
 
-#import welkin::ordinates_grid::{coordinates, level_of, ordinates, weight_of, LEVEL_COUNT}
+#import welkin::ordinates_grid::{coordinates, level_of, ordinates, weight_of, LEVEL_COUNT, REFINEMENT}
 
 @group(2) @binding(1) var ordinates_sunlight: texture_3d<f32>;
 @group(2) @binding(2) var ordinates_skylight: texture_3d<f32>;
-@group(2) @binding(3) var ordinates_source: texture_3d<f32>;
+@group(2) @binding(3) var ordinates_beam: texture_3d<f32>;
+@group(2) @binding(4) var ordinates_extinction: texture_3d<f32>;
 
 // Share of a level's half width within which it counts alone; outside it gives way to the next.
 const INNER: f32 = 0.85;
 
+const FOUR_PI: f32 = 12.5663706143592;
+
 // b' / c' (I0 - g' view . I1) of sun and sky, not negative. Light travels along the directions of I1, views against it.
-fn scattered_from(level: u32, place_m: vec3<f32>, view: vec3<f32>, linear: sampler) -> vec2<f32> {
-    let at = coordinates(place_m, level, vec3<f32>(textureDimensions(ordinates_sunlight)), 1.0);
-    let weight = weight_of(textureSampleLevel(ordinates_source, linear, at, 0.0).x);
-    let sun = textureSampleLevel(ordinates_sunlight, linear, at, 0.0) / weight;
+// The texels hold what is linear inside an opaque cloud; ordinates_moments.wgsl says how the beam is a part of it.
+fn scattered_from(level: u32, place_m: vec3<f32>, view: vec3<f32>, beam: f32, linear: sampler) -> vec2<f32> {
+    let at = coordinates(place_m, level, vec3<f32>(textureDimensions(ordinates_sunlight)), f32(REFINEMENT));
+    let weight = weight_of(textureSampleLevel(ordinates_extinction, linear, at, 0.0).x);
+    let falling = textureSampleLevel(ordinates_beam, linear, at, 0.0) / weight;
+    let in_beam = 3.0 * beam * ordinates.albedo / FOUR_PI * vec4<f32>(falling.xyz, -falling.w);
+    let sun = textureSampleLevel(ordinates_sunlight, linear, at, 0.0) / weight + in_beam;
     let sky = textureSampleLevel(ordinates_skylight, linear, at, 0.0) / weight;
     let along = vec2<f32>(dot(view, sun.xyz), dot(view, sky.xyz));
     return max(vec2<f32>(sun.w, sky.w) - ordinates.reduced_cosine * along, vec2<f32>(0.0));
@@ -33,9 +39,9 @@ fn scattered_from(level: u32, place_m: vec3<f32>, view: vec3<f32>, linear: sampl
 
 // Light of the sun per unit irradiance (1/sr) and of a sky of radiance 1 that the similar medium scatters into a view
 // ray, per unit of its scattering. Beyond the outermost level that level's edge is repeated.
-fn scattered_light(place_m: vec3<f32>, view: vec3<f32>, linear: sampler) -> vec2<f32> {
+fn scattered_light(place_m: vec3<f32>, view: vec3<f32>, beam: f32, linear: sampler) -> vec2<f32> {
     let level = min(level_of(place_m), LEVEL_COUNT - 1u);
-    let light = scattered_from(level, place_m, view, linear);
+    let light = scattered_from(level, place_m, view, beam, linear);
     let box = ordinates.levels[level];
     let half_m = 0.5 * vec2<f32>(box.size.xy) * box.cell_m.xy;
     let from_middle = abs(place_m.xy - box.lowest_m.xy - half_m) / half_m;
@@ -43,5 +49,5 @@ fn scattered_light(place_m: vec3<f32>, view: vec3<f32>, linear: sampler) -> vec2
     if outward <= 0.0 || level + 1u == LEVEL_COUNT {
         return light;
     }
-    return mix(light, scattered_from(level + 1u, place_m, view, linear), outward);
+    return mix(light, scattered_from(level + 1u, place_m, view, beam, linear), outward);
 }

@@ -95,8 +95,12 @@ pub(super) fn need(facts: &Facts) -> Need {
 
 /// What the field of density in the grids depends on besides its noise.
 pub(super) fn field_inputs(facts: &Facts) -> Fingerprint {
-    let scene = facts.scene;
-    Fingerprint::of(&(&scene.clouds, scene.time_s, facts.settings.clouds))
+    Fingerprint::of(&(layers_inputs(facts), facts.scene.time_s))
+}
+
+/// The same at any time.
+pub(super) fn layers_inputs(facts: &Facts) -> Fingerprint {
+    Fingerprint::of(&(&facts.scene.clouds, facts.settings.clouds))
 }
 
 /// The shape of so many fields on the clouds' grids.

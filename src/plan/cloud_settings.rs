@@ -41,6 +41,8 @@ pub struct CloudSettings {
     pub scattering: CloudScattering,
     /// Sweeps of the ordinates through each level of their grid.
     pub sweeps: u32,
+    /// The same in a frame of a sequence, which starts from the light of the one before.
+    pub warm_sweeps: u32,
     /// Width of the ordinates' smallest cells, m.
     pub ordinate_cell_m: u32,
     /// Cells across each level of the ordinates' grid; even.
@@ -71,6 +73,7 @@ impl CloudSettings {
         let medium = Self {
             scattering: CloudScattering::Ordinates16,
             sweeps: 24,
+            warm_sweeps: 2,
             ordinate_cell_m: 120,
             ordinate_cells: 64,
             near_samples: 4,

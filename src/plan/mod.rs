@@ -31,7 +31,7 @@ pub use lattice::lattice_cell;
 pub use multiple_scattering::{MultipleScattering, Treatment, error_in_shadow, expected_ringing};
 pub use named_settings::NamedSettings;
 pub use scene_traits::{SceneKind, SceneTraits};
-pub use sequence::{Moment, Sequence, follows, pixel_of_block};
+pub use sequence::{Moment, Sequence, follows, light_in_clouds_moved, pixel_of_block};
 use serde::Serialize;
 pub use settings::{Directions, Quadrature, Quality, Settings, SourceGrid, TableFormat, UnknownQuality};
 pub use skipping::Skipping;

@@ -14,6 +14,8 @@ pub struct Sequence {
     pub before: Option<Moment>,
     /// Whether nothing at all has changed since then.
     pub is_still: bool,
+    /// Frames since clouds or lights have last moved; none where they have not since the cut.
+    pub settling: Option<u32>,
 }
 
 /// How a frame saw the scene.
@@ -27,7 +29,12 @@ pub struct Moment {
 
 impl Sequence {
     /// The first frame after a cut.
-    pub const CUT: Self = Self { index: 0, before: None, is_still: false };
+    pub const CUT: Self = Self { index: 0, before: None, is_still: false, settling: None };
+}
+
+/// Whether the light in clouds is another: they themselves or lights have moved.
+pub fn light_in_clouds_moved(before: &Scene, now: &Scene) -> bool {
+    before.time_s != now.time_s || directions(before).zip(directions(now)).any(|(a, b)| a.direction != b.direction)
 }
 
 /// Altitude that a camera may gain between two frames, m, and as a share of its own.

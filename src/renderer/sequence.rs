@@ -3,7 +3,8 @@
 use super::{Rendered, Renderer, Targets, Timings};
 use crate::gpu::NextUse;
 use crate::passes::RenderError;
-use crate::plan::{CloudSettings, Facts, Moment, Outputs, Sequence, Settings, follows};
+use crate::passes::ordinates;
+use crate::plan::{CloudSettings, Facts, Moment, Outputs, Sequence, Settings, follows, light_in_clouds_moved};
 use crate::probe::Orders;
 use crate::scene::Scene;
 
@@ -12,8 +13,21 @@ pub(super) struct Before {
     scene: Scene,
     clouds: CloudSettings,
     index: u32,
+    settling: Option<u32>,
     /// What was out of view.
     out_of_view: [bool; 3],
+    /// Whose light in clouds is solved for.
+    solved_light: usize,
+}
+
+impl Before {
+    /// Frames since clouds or lights have last moved, now that there is another frame.
+    fn settling_until(&self, now: &Scene) -> Option<u32> {
+        match light_in_clouds_moved(&self.scene, now) {
+            true => Some(0),
+            false => self.settling.map(|frames| frames.saturating_add(1)),
+        }
+    }
 }
 
 impl Renderer {
@@ -54,14 +68,17 @@ impl Renderer {
         render: impl FnOnce(&mut Self) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
         // What was out of view has left nothing that could be followed.
-        let out_of_view =
-            Facts::new(scene, settings, Orders::All, Outputs::default())?.in_picture().out_of_view.which();
-        let is_same = |before: &Before| before.clouds == settings.clouds && before.out_of_view == out_of_view;
+        let facts = Facts::new(scene, settings, Orders::All, Outputs::default())?.in_picture();
+        let (out_of_view, solved_light) = (facts.out_of_view.which(), ordinates::light(&facts));
+        let is_same = |before: &Before| {
+            (before.clouds, before.out_of_view, before.solved_light) == (settings.clouds, out_of_view, solved_light)
+        };
         let sequence = match self.before.take() {
             Some(before) if is_same(&before) && follows(&before.scene, scene) => Sequence {
                 index: before.index + 1,
                 before: Some(Moment { camera: before.scene.camera, time_s: before.scene.time_s }),
                 is_still: before.scene == *scene,
+                settling: before.settling_until(scene),
             },
             _ => Sequence::CUT,
         };
@@ -69,8 +86,8 @@ impl Renderer {
         let rendered = render(self);
         self.sequence = None;
         let rendered = rendered?;
-        let (scene, clouds, index) = (scene.clone(), settings.clouds, sequence.index);
-        self.before = Some(Before { scene, clouds, index, out_of_view });
+        let (scene, clouds, Sequence { index, settling, .. }) = (scene.clone(), settings.clouds, sequence);
+        self.before = Some(Before { scene, clouds, index, settling, out_of_view, solved_light });
         Ok(rendered)
     }
 }

@@ -64,6 +64,7 @@ const GROUPS: [Group; 12] = [
         |to, of| {
             let clouds = &mut to.clouds;
             (clouds.scattering, clouds.sweeps) = (of.clouds.scattering, of.clouds.sweeps);
+            clouds.warm_sweeps = of.clouds.warm_sweeps;
             (clouds.ordinate_cells, clouds.ordinate_cell_m) = (of.clouds.ordinate_cells, of.clouds.ordinate_cell_m);
         },
     ),

@@ -14,6 +14,7 @@
 //! 1; the ground reflects both. View rays read them through the WGSL module `welkin::ordinates_light`.
 
 pub mod coefficients;
+mod following;
 mod grid;
 mod passes;
 mod problem;

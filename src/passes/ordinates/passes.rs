@@ -1,6 +1,9 @@
 //! The passes of the ordinates as the plan knows them.
 
-use super::{Start, Volumes, light, problem};
+use glam::DVec3;
+
+use super::following::{Relaxation, angles, time};
+use super::{Problem, Volumes, light, problem};
 use crate::gpu::ImageFormat;
 use crate::passes::{Pass, Recording, RenderError, clouds, definitions};
 use crate::plan::{Declaration, Facts, Fingerprint, Need};
@@ -14,7 +17,7 @@ pub const EXTINCTION: Pass = Pass {
         writes: &["ordinates_extinction"],
         inputs: |facts| {
             let grid = problem(facts).map(|problem| problem.grid);
-            Fingerprint::of(&(clouds::field_inputs(facts), grid))
+            Fingerprint::of(&(clouds::layers_inputs(facts), grid)).following(time(facts))
         },
         bytes: |facts| problem(facts).map_or(0, |problem| fine_bytes(&problem.grid)),
     },
@@ -30,11 +33,19 @@ pub const LIGHT: Pass = Pass {
         writes: &[
             "ordinates_depth",
             "ordinates_source",
+            "ordinates_low_faces",
+            "ordinates_high_faces",
             "ordinates_radiance",
             "ordinates_sunlight",
             "ordinates_skylight",
+            "ordinates_beam",
         ],
-        inputs: |facts| Fingerprint::of(&(problem(facts), light(facts), facts.settings.clouds.sweeps)),
+        inputs: |facts| {
+            // Its direction is followed.
+            let problem = problem(facts).map(|problem| Problem { toward_sun: DVec3::ZERO, ..problem });
+            Fingerprint::of(&(problem, light(facts), Relaxation::of(facts)))
+                .following(angles(facts).into_iter().flatten())
+        },
         bytes: |facts| problem(facts).map_or(0, |problem| Volumes::bytes(&problem) - fine_bytes(&problem.grid)),
     },
     record: record_light,
@@ -49,7 +60,7 @@ fn need(facts: &Facts) -> Need {
         (Need::NotNeeded(reason), _) => Need::NotNeeded(reason),
         (_, None) => Need::NotNeeded("light in clouds is found without ordinates".to_owned()),
         (_, Some(problem)) => {
-            let (levels, sweeps) = (problem.grid.levels.len(), facts.settings.clouds.sweeps);
+            let (levels, sweeps) = (problem.grid.levels.len(), Relaxation::of(facts).sweeps);
             let (cells, directions) = (problem.grid.cell_count(), problem.directions.count());
             Need::Needed(format!(
                 "{directions} directions in {cells} cells of {levels} levels, {sweeps} sweeps of each"
@@ -67,11 +78,11 @@ fn record_extinction(recording: &mut Recording) -> Result<(), RenderError> {
 
 fn record_light(recording: &mut Recording) -> Result<(), RenderError> {
     let Some(problem) = problem(recording.facts) else { return Ok(()) };
-    let (definitions, sweeps) = (definitions(recording.facts), recording.facts.settings.clouds.sweeps);
+    let (definitions, relaxation) = (definitions(recording.facts), Relaxation::of(recording.facts));
     let (resources, commands) = recording.parts();
     let volumes = Volumes::allocate(&problem, definitions, resources)?;
     volumes.record_depth(resources, commands)?;
     volumes.record_source(resources, commands)?;
-    volumes.record_light(Start::Cold, sweeps, resources, commands)?;
+    volumes.record_light(relaxation.start, relaxation.sweeps, resources, commands)?;
     volumes.record_moments(resources, commands)
 }

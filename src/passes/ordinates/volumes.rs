@@ -9,6 +9,22 @@ use crate::passes::{RenderError, Resources};
 
 /// Bytes of the light in one direction of a cell: sun and sky.
 const RADIANCE_BYTES: u64 = 8;
+/// Slots of a cell besides its directions: how its light rises along each axis.
+const SLOPES: u32 = 3;
+
+/// Images with a texel a cell, and those with a texel a fine texel.
+const CELL_IMAGES: [(&str, ImageFormat); 3] = [
+    ("ordinates_source", ImageFormat::Rgba32Float),
+    ("ordinates_low_faces", ImageFormat::Rgba16Float),
+    ("ordinates_high_faces", ImageFormat::Rgba16Float),
+];
+const FINE_IMAGES: [(&str, ImageFormat); 5] = [
+    ("ordinates_extinction", ImageFormat::R32Float),
+    ("ordinates_depth", ImageFormat::R32Float),
+    ("ordinates_sunlight", ImageFormat::Rgba16Float),
+    ("ordinates_skylight", ImageFormat::Rgba16Float),
+    ("ordinates_beam", ImageFormat::Rgba16Float),
+];
 
 /// What a solution starts from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,11 +56,11 @@ impl<'a> Volumes<'a> {
     ) -> Result<Self, RenderError> {
         let grid = &problem.grid;
         let [fine, cells] = [grid.fine_texture(), grid.cell_texture()].map(|[x, y, z]| ImageShape::D3(x, y, z));
-        resources.image("ordinates_extinction", fine, ImageFormat::R32Float)?;
-        resources.image("ordinates_depth", fine, ImageFormat::R32Float)?;
-        resources.image("ordinates_source", cells, ImageFormat::Rgba32Float)?;
-        resources.image("ordinates_sunlight", cells, ImageFormat::Rgba16Float)?;
-        resources.image("ordinates_skylight", cells, ImageFormat::Rgba16Float)?;
+        for (images, shape) in [(&FINE_IMAGES[..], fine), (&CELL_IMAGES[..], cells)] {
+            for &(name, format) in images {
+                resources.image(name, shape, format)?;
+            }
+        }
         resources.buffer("ordinates_radiance", radiance_bytes(problem))?;
         Ok(Self { problem, definitions })
     }
@@ -52,10 +68,9 @@ impl<'a> Volumes<'a> {
     /// Bytes of all that the passes write to.
     pub fn bytes(problem: &Problem) -> u64 {
         let texels = |extent: [u32; 3]| extent.map(u64::from).iter().product::<u64>();
-        let fine = 2 * ImageFormat::R32Float.texel_bytes();
-        let cell = ImageFormat::Rgba32Float.texel_bytes() + 2 * ImageFormat::Rgba16Float.texel_bytes();
-        texels(problem.grid.fine_texture()) * fine
-            + texels(problem.grid.cell_texture()) * cell
+        let texel = |images: &[(&str, ImageFormat)]| images.iter().map(|(_, format)| format.texel_bytes()).sum::<u64>();
+        texels(problem.grid.fine_texture()) * texel(&FINE_IMAGES)
+            + texels(problem.grid.cell_texture()) * texel(&CELL_IMAGES)
             + radiance_bytes(problem)
     }
 
@@ -65,17 +80,17 @@ impl<'a> Volumes<'a> {
         resources: &mut Resources,
         commands: &mut Commands,
     ) -> Result<(), RenderError> {
-        self.each_level("ordinates_extinction", self.problem.grid.refinement, resources, commands)
+        self.each_level("ordinates_extinction", &[], self.problem.grid.refinement, resources, commands)
     }
 
     /// Optical depth towards the sun of the extinction that lies in `ordinates_extinction`.
     pub fn record_depth(&self, resources: &mut Resources, commands: &mut Commands) -> Result<(), RenderError> {
-        self.each_level("ordinates_depth", self.problem.grid.refinement, resources, commands)
+        self.each_level("ordinates_depth", &[], self.problem.grid.refinement, resources, commands)
     }
 
     /// What cells do to light.
     pub fn record_source(&self, resources: &mut Resources, commands: &mut Commands) -> Result<(), RenderError> {
-        self.each_level("ordinates_source", 1, resources, commands)
+        self.each_level("ordinates_source", &["ordinates_low_faces", "ordinates_high_faces"], 1, resources, commands)
     }
 
     /// Relaxes the light in every level so many times, the coarsest level first.
@@ -99,9 +114,9 @@ impl<'a> Volumes<'a> {
 
     /// Mean and flux of the light.
     pub fn record_moments(&self, resources: &mut Resources, commands: &mut Commands) -> Result<(), RenderError> {
-        let images = ["ordinates_sunlight", "ordinates_skylight"].map(|name| existing(resources, name));
-        let [Some(sun), Some(sky)] = &images else { return Ok(()) };
-        let images = [("ordinates_sunlight_image", sun), ("ordinates_skylight_image", sky)];
+        let names = ["ordinates_sunlight", "ordinates_skylight", "ordinates_beam"];
+        let targets = images_of(resources, &names);
+        let images: Vec<_> = targets.iter().map(|(name, image)| (name.as_str(), image)).collect();
         for (index, level) in self.problem.grid.levels.iter().enumerate() {
             let mut parameters = Parameters::default();
             parameters.insert("part", &[index as u32]);
@@ -131,21 +146,22 @@ impl<'a> Volumes<'a> {
         Ok(())
     }
 
-    /// One dispatch a level of a pass that fills the image of its own name, of so many texels along a cell's edge.
+    /// One dispatch a level of a pass that fills the image of its own name and some others, of so many texels along a
+    /// cell's edge.
     fn each_level(
         &self,
         pass: &'static str,
+        others: &[&'static str],
         texels: u32,
         resources: &mut Resources,
         commands: &mut Commands,
     ) -> Result<(), RenderError> {
-        let Some(target) = existing(resources, pass) else { return Ok(()) };
-        let name = format!("{pass}_image");
+        let targets = images_of(resources, &[&[pass], others].concat());
+        let images: Vec<_> = targets.iter().map(|(name, image)| (name.as_str(), image)).collect();
         for (index, level) in self.problem.grid.levels.iter().enumerate() {
             let mut parameters = Parameters::default();
             parameters.insert("part", &[index as u32]);
             let work = Work::Invocations((level.size * texels).to_array());
-            let images = [(name.as_str(), &target)];
             dispatch(resources, commands, pass, self.definitions.clone(), &parameters, &images, work)?;
         }
         Ok(())
@@ -153,9 +169,11 @@ impl<'a> Volumes<'a> {
 }
 
 fn radiance_bytes(problem: &Problem) -> u64 {
-    problem.grid.cell_count() * u64::from(problem.directions.count()) * RADIANCE_BYTES
+    problem.grid.cell_count() * u64::from(problem.directions.count() + SLOPES) * RADIANCE_BYTES
 }
 
-fn existing(resources: &Resources, name: &str) -> Option<GpuImage> {
-    resources.existing_image(name).cloned()
+/// Images of those names, by the names of the variables that shaders write them through.
+fn images_of(resources: &Resources, names: &[&str]) -> Vec<(String, GpuImage)> {
+    let named = |name: &&str| Some((format!("{name}_image"), resources.existing_image(name)?.clone()));
+    names.iter().filter_map(named).collect()
 }
