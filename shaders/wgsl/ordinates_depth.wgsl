@@ -1,11 +1,11 @@
 // Pass: optical depth of the clouds' similar medium from every fine texel towards the sun.
 //
 // One invocation a texel of one level. A ray goes from the finest level that holds it to coarser ones, in steps of half
-// a texel's mean chord, and ends where it leaves the grid or where nothing is left of the light.
+// a texel's mean chord that end where a level does, until it leaves the grid or nothing is left of the light.
 //
 // Definitions: those of welkin::ordinates_grid.
 
-#import welkin::ordinates_grid::{ordinates, LEVEL_COUNT, REFINEMENT, coordinates, level_of}
+#import welkin::ordinates_grid::{ordinates, LEVEL_COUNT, REFINEMENT, coordinates, highest_m, level_of}
 
 struct Part {
     level: u32,
@@ -21,6 +21,18 @@ const MAX_STEPS: u32 = 2048u;
 @group(0) @binding(2) var table_sampler: sampler;
 @group(0) @binding(3) var ordinates_depth_image: texture_storage_3d<r32float, write>;
 
+// Distance to where a ray leaves a level that holds its place.
+fn exit_m(place_m: vec3<f32>, direction: vec3<f32>, level: u32) -> f32 {
+    let ahead_m = select(place_m - ordinates.levels[level].lowest_m, highest_m(level) - place_m, direction > vec3<f32>(0.0));
+    let along_m = max(ahead_m, vec3<f32>(0.0)) / max(abs(direction), vec3<f32>(1e-6));
+#ifdef ORDINATES_PERIODIC
+    if level + 1u == LEVEL_COUNT {
+        return along_m.z;
+    }
+#endif
+    return min(min(along_m.x, along_m.y), along_m.z);
+}
+
 fn depth_along(start_m: vec3<f32>, direction: vec3<f32>) -> f32 {
     let texture_size = vec3<f32>(textureDimensions(ordinates_extinction));
     var place_m = start_m;
@@ -32,12 +44,12 @@ fn depth_along(start_m: vec3<f32>, direction: vec3<f32>) -> f32 {
         }
         let texel_m = ordinates.levels[at].cell_m / f32(REFINEMENT);
         // Half of volume over projected area.
-        let step_m = 0.5 / dot(abs(direction), 1.0 / texel_m);
+        let longest_m = 0.5 / dot(abs(direction), 1.0 / texel_m);
+        let step_m = min(longest_m, exit_m(place_m, direction, at));
         let middle = coordinates(place_m + 0.5 * step_m * direction, at, texture_size, f32(REFINEMENT));
-        // The last step may reach out of the grid, into clear air.
-        let inside = select(0.0, 1.0, level_of(place_m + 0.5 * step_m * direction) < LEVEL_COUNT);
-        depth += inside * step_m * textureSampleLevel(ordinates_extinction, table_sampler, middle, 0.0).x;
-        place_m += step_m * direction;
+        depth += step_m * textureSampleLevel(ordinates_extinction, table_sampler, middle, 0.0).x;
+        // A little more, so that rounding leaves no place on the boundary.
+        place_m += (step_m + 1e-3 * longest_m) * direction;
     }
     return depth;
 }
