@@ -193,7 +193,7 @@ fn what_is_edited_beside_the_window_is_seen_in_it_and_faults_change_nothing() {
 }
 
 #[test]
-fn a_window_of_a_fine_screen_is_full_hidden_and_driven_by_keys_alone() {
+fn a_window_of_a_fine_screen_is_full_and_minimised_and_its_panel_waits_for_no_sky() {
     let (desktop, folder) = (Desktop::managed(), folder());
     let folder = folder.path();
     // Two pixels to a point; settings where the platform has them.
@@ -213,7 +213,7 @@ fn a_window_of_a_fine_screen_is_full_hidden_and_driven_by_keys_alone() {
     let camera = picture(&program, folder, 1).camera;
     assert_eq!((camera.width, camera.height), (600, 400), "300 x 200 points");
 
-    // Full, and back again.
+    // Full.
     program.key("F11");
     until("a full screen", || (is_blue(desktop.pixel(20, 20)) && is_blue(desktop.pixel(780, 20))).then_some(()));
     // The keys are shown at once, however long the sky takes: here, on a CPU, a quarter of a minute and more.
@@ -225,16 +225,10 @@ fn a_window_of_a_fine_screen_is_full_hidden_and_driven_by_keys_alone() {
     assert!(pressed.elapsed() < Duration::from_secs(5), "the panel waits for the sky: {:?}", pressed.elapsed());
     program.key("1 Escape");
     until("no keys", || is_blue(desktop.pixel(400, 120)).then_some(()));
-    // Without a mouse: through the fields of the panel to one that an arrow changes, and back to the sky.
     program.key("h");
     until("the panel", || (!is_blue(desktop.pixel(20, 20))).then_some(()));
-    until("a field that a key has changed", || {
-        program.key("Tab Right");
-        std::thread::sleep(Duration::from_millis(300));
-        program.title().ends_with('*').then_some(())
-    });
-    program.key("Escape ctrl+z");
-    until("no change", || (program.title() == "welkin: scene").then_some(()));
+    program.key("h");
+    until("no panel", || is_blue(desktop.pixel(20, 20)).then_some(()));
 
     // Minimised and shown again, it goes on.
     program.act_on_window("windowminimize WINDOW sleep 1 windowactivate WINDOW sleep 1");
