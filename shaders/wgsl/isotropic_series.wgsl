@@ -10,7 +10,9 @@
 // spherical harmonics of degree 0.
 
 #import welkin::atmosphere::{atmosphere, densities, PI, SCATTERER_COUNT}
-#import welkin::directions::{direction_of, field, irradiance, project, DIRECTION_COUNT, INVOCATION_COUNT}
+#import welkin::directions::{
+    direction_of, field, irradiance, project, AZIMUTH_COUNT, COSINE_COUNT, DIRECTION_COUNT, INVOCATION_COUNT
+}
 #import welkin::field_radiance::ray_from
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
@@ -85,10 +87,14 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
         first_irradiance = irradiance(mu_h);
     }
     workgroupBarrier();
-    for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
-        let direction = direction_of(i, mu_h);
+    // Unit light from everywhere is the same at every azimuth: one ray for each cosine.
+    for (var j = invocation; j < COSINE_COUNT; j += INVOCATION_COUNT) {
+        let direction = direction_of(j * AZIMUTH_COUNT, mu_h);
         let ray = ray_from(here.altitude_m, here.mu, direction.mu, direction.cos_phi, direction.hits_ground);
-        field[i] = isotropic_along(ray, direction.hits_ground).transfer;
+        let transfer = isotropic_along(ray, direction.hits_ground).transfer;
+        for (var k = 0u; k < AZIMUTH_COUNT; k++) {
+            field[j * AZIMUTH_COUNT + k] = transfer;
+        }
     }
     workgroupBarrier();
     if invocation == 0u {
