@@ -1,8 +1,8 @@
 //! How the light in clouds follows them from frame to frame.
 //!
 //! In a sequence of frames it is relaxed from where it was, by a few sweeps, and only once what it was solved for has moved
-//! by a stated share of a cell or angle. So it is never later than that, and what a few sweeps leave is as much of the small
-//! change as they leave of any: docs/clouds.md has the measurement. Once nothing moves any more it settles: as many sweeps
+//! by a stated share of a cell or angle. So it is never later than that, but for what a few sweeps leave of the small
+//! change: `tests/cloud_pictures.rs` bounds both. Once nothing moves any more it settles: as many sweeps
 //! follow, some a frame, as a frame that stands alone has.
 
 use super::Start;
