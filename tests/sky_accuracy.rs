@@ -62,13 +62,15 @@ fn single_scattering_is_right_from_noon_to_twilight() {
     with_renderer(|renderer| {
         let rows = tables::read("earth_sky.csv");
         let bounds = Bounds { day: [0.3, 1.5], night: &[(92.0..=92.0, 5.0), (94.0..=94.0, 5.0)] };
-        let mut keeps = |name, change: fn(&mut Scene)| {
-            let found = answers(renderer, &rows, Settings::of(Quality::High), Orders::Single, change);
+        let mut keeps = |name, quality, change: fn(&mut Scene)| {
+            let found = answers(renderer, &rows, Settings::of(quality), Orders::Single, change);
             bounds.are_kept_by(name, &errors(&rows, &found, "single_quad"))
         };
-        assert!(keeps("single, high", as_it_is));
+        // At `medium` too few rows of the sky view lie under the edge of the planet's shadow to hold it by themselves.
+        assert!(keeps("single, medium", Quality::Medium, as_it_is));
+        assert!(keeps("single, high", Quality::High, as_it_is));
         // Negative control: air that is one per cent denser must be noticed.
-        assert!(!keeps("single, denser air", |scene| {
+        assert!(!keeps("single, denser air", Quality::High, |scene| {
             scene.medium.constituents[0].scattering_per_m.iter_mut().for_each(|b| *b *= 1.01);
         }));
     });
