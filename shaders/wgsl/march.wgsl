@@ -33,8 +33,9 @@ struct GaussNode {
     // In ]0, 1[.
     abscissa: f32,
     weight: f32,
-    padding_a: f32,
-    padding_b: f32,
+    // v and weight on a leg that descends, whose nodes are walked from v = 1 to v = 0.
+    descending_abscissa: f32,
+    descending_weight: f32,
 }
 
 // Gauss-Legendre nodes on [0, 1], ascending.
@@ -273,12 +274,12 @@ fn leg_move(leg: ptr<function, Leg>, ray: AirRay, v: f32, altitude_m: f32, optic
 // Moves to the leg's next node; optical_depth becomes that from the ray's start to the node.
 fn leg_advance(leg: ptr<function, Leg>, ray: AirRay, index: u32, optical_depth: ptr<function, vec3<f32>>) -> Node {
     let gauss = gauss_nodes[index];
-    // The nodes are symmetric about 1/2, so a leg walked from its high end only mirrors them.
-    let v = select(gauss.abscissa, 1.0 - gauss.abscissa, leg.descending);
+    let v = select(gauss.abscissa, gauss.descending_abscissa, leg.descending);
+    let weight = select(gauss.weight, gauss.descending_weight, leg.descending);
     var node: Node;
     node.distance_m = leg_distance_m(*leg, v);
     node.altitude_m = leg_altitude_m(*leg, ray, node.distance_m);
-    node.weight_m = 2.0 * leg.length_m * v * gauss.weight;
+    node.weight_m = 2.0 * leg.length_m * v * weight;
     leg_move(leg, ray, v, node.altitude_m, optical_depth);
     return node;
 }

@@ -122,8 +122,8 @@ pub enum Quadrature {
     /// Gauss-Legendre on every leg of the ray.
     GaussLegendre,
     /// As other renderers do, for comparison: steps of equal length sampled at three tenths, and what lies behind the last
-    /// sample left out (sebh/UnrealEngineSkyAtmosphere, `Resources/RenderSkyRayMarching.hlsl`; copied by Bevy). On ascending
-    /// rays; those that descend are sampled where v is the mirror image.
+    /// sample left out (sebh/UnrealEngineSkyAtmosphere, `Resources/RenderSkyRayMarching.hlsl`; copied by Bevy); on each leg
+    /// of a ray.
     EqualSteps,
 }
 

@@ -116,7 +116,7 @@ mod tests {
         assert_layout!(terrain, "Octave", OctaveBlock, [to_cells, fraction, cell, wavelength_m, share, key]);
         assert_eq!(size(&terrain, "Octave"), size_of::<OctaveBlock>());
         let gauss = shader("first_order");
-        assert_layout!(gauss, "GaussNode", GaussNodeBlock, [abscissa, weight]);
+        assert_layout!(gauss, "GaussNode", GaussNodeBlock, [abscissa, weight, descending_abscissa, descending_weight]);
         assert_eq!(size(&gauss, "GaussNode"), size_of::<GaussNodeBlock>());
     }
 

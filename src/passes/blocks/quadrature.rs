@@ -13,15 +13,20 @@ use crate::plan::{Quadrature, Settings};
 pub struct GaussNodeBlock {
     pub(super) abscissa: f32,
     pub(super) weight: f32,
-    pub(super) padding: [f32; 2],
+    pub(super) descending_abscissa: f32,
+    pub(super) descending_weight: f32,
+}
+
+impl GaussNodeBlock {
+    /// Of a rule that is symmetric about 1/2: a leg walked from its high end only mirrors it.
+    fn symmetric(abscissa: f64, weight: f64) -> Self {
+        let (abscissa, weight) = (abscissa as f32, weight as f32);
+        Self { abscissa, weight, descending_abscissa: 1.0 - abscissa, descending_weight: weight }
+    }
 }
 
 fn rule(n: u32) -> impl Iterator<Item = GaussNodeBlock> {
-    gauss_legendre(n as usize).into_iter().map(|node| GaussNodeBlock {
-        abscissa: node.abscissa as f32,
-        weight: node.weight as f32,
-        padding: [0.0; 2],
-    })
+    gauss_legendre(n as usize).into_iter().map(|node| GaussNodeBlock::symmetric(node.abscissa, node.weight))
 }
 
 /// Nodes on each leg of a ray.
@@ -36,13 +41,15 @@ pub fn gauss_nodes(settings: &Settings) -> Vec<GaussNodeBlock> {
 const SAMPLED_AT: f64 = 0.3;
 
 /// Samples at equal distances, each for the way from the one before; see [`Quadrature::EqualSteps`]. Distance over length
-/// is v², so that a sample's share of the length is 2 v times its weight.
+/// is v² on a leg that ascends and 1 - v² on one that descends, so that a sample's share of the length is 2 v times its
+/// weight on both.
 fn equal_steps(n: u32) -> impl Iterator<Item = GaussNodeBlock> {
     let distance = move |i: u32| (f64::from(i) + SAMPLED_AT) / f64::from(n);
     (0..n).map(move |i| {
         let before = if i == 0 { 0.0 } else { distance(i - 1) };
-        let v = distance(i).sqrt();
-        GaussNodeBlock { abscissa: v as f32, weight: (0.5 * (distance(i) - before) / v) as f32, padding: [0.0; 2] }
+        let [up, down] = [distance(i).sqrt(), (1.0 - distance(i)).sqrt()];
+        let [weight, descending_weight] = [up, down].map(|v| (0.5 * (distance(i) - before) / v) as f32);
+        GaussNodeBlock { abscissa: up as f32, weight, descending_abscissa: down as f32, descending_weight }
     })
 }
 
@@ -64,11 +71,7 @@ fn fejer(n: u32) -> impl Iterator<Item = GaussNodeBlock> {
     (0..n).map(move |k| {
         let theta = (f64::from(k) + 0.5) * PI / f64::from(n);
         let terms = (1..=n / 2).map(|j| (2.0 * f64::from(j) * theta).cos() / (4.0 * f64::from(j * j) - 1.0));
-        GaussNodeBlock {
-            abscissa: (0.5 * theta).sin().powi(2) as f32,
-            weight: ((1.0 - 2.0 * terms.sum::<f64>()) / f64::from(n)) as f32,
-            padding: [0.0; 2],
-        }
+        GaussNodeBlock::symmetric((0.5 * theta).sin().powi(2), (1.0 - 2.0 * terms.sum::<f64>()) / f64::from(n))
     })
 }
 
@@ -82,10 +85,15 @@ mod tests {
 
     #[test]
     fn equal_steps_leave_out_the_end_of_the_ray() {
-        let length = |node: &GaussNodeBlock| 2.0 * f64::from(node.abscissa) * f64::from(node.weight);
-        let sum: f64 = equal_steps(16).map(|node| length(&node)).sum();
-        assert!((sum - (1.0 - 0.7 / 16.0)).abs() < 1e-6, "{sum}");
-        assert!((rule(16).map(|node| length(&node)).sum::<f64>() - 1.0).abs() < 1e-6);
+        let length = |v: f32, weight: f32| 2.0 * f64::from(v) * f64::from(weight);
+        let ascending = |node: GaussNodeBlock| length(node.abscissa, node.weight);
+        let descending = |node: GaussNodeBlock| length(node.descending_abscissa, node.descending_weight);
+        for sum in [equal_steps(16).map(ascending).sum::<f64>(), equal_steps(16).map(descending).sum()] {
+            assert!((sum - (1.0 - 0.7 / 16.0)).abs() < 1e-6, "{sum}");
+        }
+        for sum in [rule(16).map(ascending).sum::<f64>(), rule(16).map(descending).sum()] {
+            assert!((sum - 1.0).abs() < 1e-6, "{sum}");
+        }
     }
 
     #[test]
