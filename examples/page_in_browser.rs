@@ -42,7 +42,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     problems.iter().for_each(|problem| eprintln!("{problem}"));
     // Controls: a picture that is cut off, and one that lies elsewhere.
     let cut = page.replacen("base64,", "base64,AAAA", 1);
-    let elsewhere = page.replacen("<img src=\"", "<img src=\"http://127.0.0.1:9/picture.png\"><img src=\"", 1);
+    let elsewhere = page.replacen("<body>", "<body><img src=\"http://127.0.0.1:9/picture.png\">", 1);
     for (what, broken) in [("a broken picture", cut), ("a picture from the network", elsewhere)] {
         if broken == page || self::problems(&ask(folder.path(), &broken)?).is_empty() {
             return Err(format!("{what} goes unnoticed").into());
