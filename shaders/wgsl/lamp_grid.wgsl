@@ -24,7 +24,7 @@ const FIRST_M: f32 = 0.5;
 const PER_OCTAVE: f32 = 3.0;
 // All of a lamp's light is near within so many tiles, none beyond so many.
 const ALL_NEAR_TILES: f32 = 1.0;
-const NONE_NEAR_TILES: f32 = 2.5;
+const NONE_NEAR_TILES: f32 = 3.0;
 // The same on the ground, as shares of the distance from the camera: slices are that long there.
 const ALL_NEAR_ON_GROUND: f32 = 0.35;
 const NONE_NEAR_ON_GROUND: f32 = 0.7;
