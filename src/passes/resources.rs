@@ -214,7 +214,7 @@ impl Resources {
         self.pipelines.compiled
     }
 
-    /// Begins a recording: what earlier ones have compiled and not used for long is let go ([`Pipelines`]).
+    /// Begins a recording: what earlier ones have compiled and not used for long is let go (`Pipelines`).
     pub fn begin_recording(&mut self) {
         self.pipelines.begin_recording();
     }
