@@ -18,20 +18,25 @@ use welkin::scene::{Effect, Light, Scene};
 use welkin_shaders::{Definition, Shader, Sources};
 
 use skipping_trials::{
-    BOUND, CAPTURE, LIGHTS_BOUND, WRONG_ABOUT_LIGHTS, difference, difference_in_thin_air, difference_in_views,
+    BOUND, CAPTURE, LIGHTS_BOUND, Sample, WRONG_ABOUT_LIGHTS, difference, difference_in_thin_air, difference_in_views,
     difference_of_lag, renderers, scene, wrong_about_views,
 };
+
+/// The first difference above the bound ends it: for a rule the test has failed then, and a wrong one is caught.
+fn up_to(scenes: usize, seed: u64, bound: f64) -> Sample {
+    Sample { scenes, seed, enough: bound }
+}
 
 #[test]
 fn lights_and_discs_that_are_left_out_do_not_show() {
     let _alone = common::alone();
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap();
-    let (worst, changed) = difference(&mut renderer, Skipping::USUAL, 120, 7);
-    assert!(worst < LIGHTS_BOUND && changed > 50, "{worst} in {changed} scenes");
+    let tally = difference(&mut renderer, Skipping::USUAL, up_to(120, 7, LIGHTS_BOUND));
+    assert!(tally.worst < LIGHTS_BOUND && tally.changed > 50, "{tally:?}");
     // Controls: each rule, set wrong, is caught.
     for rules in WRONG_ABOUT_LIGHTS {
-        let (worst, changed) = difference(&mut renderer, rules, 60, 7);
-        assert!(worst > LIGHTS_BOUND, "{rules:?} goes unnoticed: {worst} in {changed} scenes");
+        let tally = difference(&mut renderer, rules, up_to(60, 7, LIGHTS_BOUND));
+        assert!(tally.worst > LIGHTS_BOUND, "{rules:?} goes unnoticed: {tally:?}");
     }
 }
 
@@ -42,11 +47,12 @@ fn what_is_out_of_the_picture_does_not_show_in_it() {
     // Each effect, or air alone, with how many views are tried, and how many must be changed.
     let cases = [(None, 40, 10), (Some(Effect::Mountains), 40, 7), (Some(Effect::Clouds), 24, 3)];
     for (effect, views, at_least) in cases {
-        let (worst, changed) = difference_in_views(&mut renderers, effect, Skipping::USUAL, views, 11);
-        assert!(worst < BOUND && changed >= at_least, "{effect:?}: {worst} in {changed} of {views} views");
+        let sample = up_to(views, 11, BOUND);
+        let tally = difference_in_views(&mut renderers, effect, Skipping::USUAL, sample);
+        assert!(tally.worst < BOUND && tally.changed >= at_least, "{effect:?}: {tally:?}");
         for rules in wrong_about_views(effect) {
-            let (worst, _) = difference_in_views(&mut renderers, effect, rules, views, 11);
-            assert!(worst > BOUND, "{effect:?}: {rules:?} goes unnoticed: {worst}");
+            let tally = difference_in_views(&mut renderers, effect, rules, sample);
+            assert!(tally.worst > BOUND, "{effect:?}: {rules:?} goes unnoticed: {tally:?}");
         }
     }
 }
@@ -55,22 +61,24 @@ fn what_is_out_of_the_picture_does_not_show_in_it() {
 fn light_scattered_more_than_once_does_not_show_in_thin_air_over_dark_ground() {
     let _alone = common::alone();
     let mut renderers = renderers();
-    let (worst, changed) = difference_in_thin_air(&mut renderers, Skipping::USUAL, 40, 5);
-    assert!(worst < BOUND && changed >= 10, "{worst} in {changed} scenes");
+    let sample = up_to(40, 5, BOUND);
+    let tally = difference_in_thin_air(&mut renderers, Skipping::USUAL, sample);
+    assert!(tally.worst < BOUND && tally.changed >= 10, "{tally:?}");
     let wrong = Skipping { thin_share: 1.0, ..Skipping::USUAL };
-    let (worst, _) = difference_in_thin_air(&mut renderers, wrong, 40, 5);
-    assert!(worst > BOUND, "a wrong rule goes unnoticed: {worst}");
+    let tally = difference_in_thin_air(&mut renderers, wrong, sample);
+    assert!(tally.worst > BOUND, "a wrong rule goes unnoticed: {tally:?}");
 }
 
 #[test]
 fn tables_that_lag_behind_the_sun_by_all_that_they_may_do_not_show_it() {
     let _alone = common::alone();
     let mut renderers = renderers();
-    let (worst, lagged) = difference_of_lag(&mut renderers, Skipping::IN_SEQUENCE, 20, 3);
-    assert!(worst < BOUND && lagged >= 10, "{worst} in {lagged} scenes");
+    let sample = up_to(20, 3, BOUND);
+    let tally = difference_of_lag(&mut renderers, Skipping::IN_SEQUENCE, sample);
+    assert!(tally.worst < BOUND && tally.changed >= 10, "{tally:?}");
     let careless = Skipping { lag_share: 20.0 * BOUND, ..Skipping::IN_SEQUENCE };
-    let (worst, _) = difference_of_lag(&mut renderers, careless, 20, 3);
-    assert!(worst > BOUND, "a lag of twenty times as much goes unnoticed: {worst}");
+    let tally = difference_of_lag(&mut renderers, careless, sample);
+    assert!(tally.worst > BOUND, "a lag of twenty times as much goes unnoticed: {tally:?}");
 }
 
 #[test]

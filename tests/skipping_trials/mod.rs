@@ -42,7 +42,7 @@ pub const WRONG_ABOUT_LIGHTS: [Skipping; 3] = [
 /// Rules about what is out of the picture, set wrong, that views of an effect or of air alone must catch.
 pub fn wrong_about_views(effect: Option<Effect>) -> Vec<Skipping> {
     let out_of_view = |share: f64| Skipping { out_of_view_share: share, ..Skipping::USUAL };
-    let nearly_clear = Skipping { hidden_depth: 0.5, ..Skipping::USUAL };
+    let nearly_clear = Skipping { hidden_depth: 0.05, ..Skipping::USUAL };
     match effect {
         None => vec![out_of_view(0.5)],
         Some(Effect::Mountains) => vec![out_of_view(0.1), nearly_clear],
@@ -80,13 +80,49 @@ pub fn random_scene(random: &mut Pcg64Mcg) -> Scene {
     scene
 }
 
-/// The largest difference of a pixel that leaving out by these rules makes, relative to the pixel, over so many scenes with
-/// two lights, and how many scenes' plans they change.
-pub fn difference(renderer: &mut Renderer, skipping: Skipping, scenes: usize, seed: u64) -> (f64, usize) {
-    let mut random = Pcg64Mcg::seed_from_u64(seed);
-    let (mut worst, mut changed) = (0.0_f64, 0);
-    for _ in 0..scenes {
-        let scene = random_scene(&mut random);
+/// Which scenes are tried, and when enough has been seen.
+#[derive(Debug, Clone, Copy)]
+pub struct Sample {
+    pub scenes: usize,
+    pub seed: u64,
+    /// The first scene that is off by more is the last; infinite to try them all.
+    pub enough: f64,
+}
+
+/// What a rule does to a sample of scenes.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Tally {
+    /// How many were tried.
+    pub scenes: usize,
+    /// In how many of them the rule changed the plan.
+    pub changed: usize,
+    /// The largest difference of a pixel that it makes, relative to the pixel.
+    pub worst: f64,
+    /// In which scene.
+    pub worst_scene: usize,
+}
+
+impl Sample {
+    /// Each scene with and without what a rule leaves out: whether the plans differ, and by how much a pixel does.
+    fn tally(self, mut trial: impl FnMut(&mut Pcg64Mcg) -> (bool, f64)) -> Tally {
+        let mut random = Pcg64Mcg::seed_from_u64(self.seed);
+        let mut tally = Tally::default();
+        while tally.scenes < self.scenes && tally.worst <= self.enough {
+            let (is_changed, difference) = trial(&mut random);
+            if difference > tally.worst {
+                (tally.worst, tally.worst_scene) = (difference, tally.scenes);
+            }
+            tally.changed += usize::from(is_changed);
+            tally.scenes += 1;
+        }
+        tally
+    }
+}
+
+/// What leaving out by these rules does to scenes with two lights.
+pub fn difference(renderer: &mut Renderer, skipping: Skipping, sample: Sample) -> Tally {
+    sample.tally(|random| {
+        let scene = random_scene(random);
         let mut with = |skipping| {
             let settings = Settings { skipping, ..Settings::of(Quality::Low) };
             let facts = Facts::new(&scene, settings, Orders::All, CAPTURE).unwrap();
@@ -95,10 +131,8 @@ pub fn difference(renderer: &mut Renderer, skipping: Skipping, scenes: usize, se
             (renderer.render(&scene, settings, CAPTURE).unwrap().frame, lit)
         };
         let ((all, all_lit), (some, some_lit)) = (with(Skipping::NONE), with(skipping));
-        changed += usize::from(all_lit != some_lit);
-        worst = worst.max(largest_difference(&all, &some));
-    }
-    (worst, changed)
+        (all_lit != some_lit, largest_difference(&all, &some))
+    })
 }
 
 /// Tables so small that a frame costs next to nothing; all passes are the same.
@@ -150,37 +184,40 @@ pub fn random_view(random: &mut Pcg64Mcg, effect: Option<Effect>) -> Scene {
     effect.map_or(scene.clone(), |effect| effect.added_to(&scene))
 }
 
-/// As [`difference`], over so many views of an effect or of air alone.
+/// Nodes a leg that resolve air dense enough to hide mountains: where a leg is hundreds of optical depths deep, its light comes
+/// from its last kilometres, and most nodes lie at its low end. In scene 74 of the sweep, ozone 300 times as dense seen from
+/// inside it, frames with and without mountains differ by a factor of 5358 with 4 nodes, 2.9 with 16, 0.08 with 32 and
+/// 0.0014 with 64, as both come closer to what is there; slices of froxels change nothing.
+const NODES_IN_DENSE_AIR: u32 = 64;
+
+/// As [`difference`], of views of an effect or of air alone.
 pub fn difference_in_views(
     renderers: &mut [Renderer; 2],
     effect: Option<Effect>,
     skipping: Skipping,
-    views: usize,
-    seed: u64,
-) -> (f64, usize) {
-    let mut random = Pcg64Mcg::seed_from_u64(seed);
-    let (mut worst, mut changed) = (0.0_f64, 0);
-    for _ in 0..views {
-        let scene = random_view(&mut random, effect);
-        let [all, some] = [Skipping::NONE, skipping];
-        let [forced, left_out] = renderers;
-        let all = forced.render(&scene, tiny(all), CAPTURE).unwrap();
-        let some = left_out.render(&scene, tiny(some), CAPTURE).unwrap();
+    sample: Sample,
+) -> Tally {
+    let [forced, left_out] = renderers;
+    let settings = |skipping| match effect {
+        Some(Effect::Mountains) => Settings { nodes_per_leg: NODES_IN_DENSE_AIR, ..tiny(skipping) },
+        _ => tiny(skipping),
+    };
+    sample.tally(|random| {
+        let scene = random_view(random, effect);
+        let all = forced.render(&scene, settings(Skipping::NONE), CAPTURE).unwrap();
+        let some = left_out.render(&scene, settings(skipping), CAPTURE).unwrap();
         let needed = |plan: &Plan| plan.passes.iter().filter(|p| p.decision != Decision::Skip).count();
-        changed += usize::from(needed(&all.timings.plan) != needed(&some.timings.plan));
-        worst = worst.max(largest_difference(&all.frame, &some.frame));
-    }
-    (worst, changed)
+        let is_changed = needed(&all.timings.plan) != needed(&some.timings.plan);
+        (is_changed, largest_difference(&all.frame, &some.frame))
+    })
 }
 
-/// As [`difference`], over so many scenes whose sun has moved by as much as tables may lag behind it: by how much a frame
-/// is off whose tables lag, and in how many scenes one did.
-pub fn difference_of_lag(renderers: &mut [Renderer; 2], skipping: Skipping, scenes: usize, seed: u64) -> (f64, usize) {
-    let mut random = Pcg64Mcg::seed_from_u64(seed);
-    let (mut worst, mut lagged) = (0.0_f64, 0);
-    for _ in 0..scenes {
-        let mut scene = random_hills(&mut random);
-        let [exact, lagging] = renderers;
+/// As [`difference`], of scenes whose sun has moved by as much as tables may lag behind it: by how much a frame is off whose
+/// tables lag, and in how many scenes one did.
+pub fn difference_of_lag(renderers: &mut [Renderer; 2], skipping: Skipping, sample: Sample) -> Tally {
+    let [exact, lagging] = renderers;
+    sample.tally(|random| {
+        let mut scene = random_hills(random);
         lagging.forget();
         lagging.render(&scene, tiny(skipping), CAPTURE).unwrap();
         let Light::Directional(sun) = &mut scene.lights[0] else { panic!("the sun is directional") };
@@ -188,10 +225,9 @@ pub fn difference_of_lag(renderers: &mut [Renderer; 2], skipping: Skipping, scen
         sun.direction.elevation_rad -= 0.98 * elevation_slack_rad(sun, skipping.lag_share);
         let late = lagging.render(&scene, tiny(skipping), CAPTURE).unwrap();
         let now = exact.render(&scene, tiny(Skipping::USUAL), CAPTURE).unwrap();
-        lagged += usize::from(late.timings.plan.passes.iter().any(|pass| pass.reason.contains("lags behind")));
-        worst = worst.max(largest_difference(&now.frame, &late.frame));
-    }
-    (worst, lagged)
+        let has_lagged = late.timings.plan.passes.iter().any(|pass| pass.reason.contains("lags behind"));
+        (has_lagged, largest_difference(&now.frame, &late.frame))
+    })
 }
 
 /// Hills under a sun of any height, from the ground to the summits and above, in air from clear to hazy.
@@ -212,24 +248,16 @@ fn random_hills(random: &mut Pcg64Mcg) -> Scene {
     scene
 }
 
-/// As [`difference`], over so many scenes of thin air over black ground.
-pub fn difference_in_thin_air(
-    renderers: &mut [Renderer; 2],
-    skipping: Skipping,
-    scenes: usize,
-    seed: u64,
-) -> (f64, usize) {
-    let mut random = Pcg64Mcg::seed_from_u64(seed);
-    let (mut worst, mut changed) = (0.0_f64, 0);
-    for _ in 0..scenes {
-        let scene = random_thin_air(&mut random);
-        let [forced, left_out] = renderers;
+/// As [`difference`], of scenes of thin air over black ground.
+pub fn difference_in_thin_air(renderers: &mut [Renderer; 2], skipping: Skipping, sample: Sample) -> Tally {
+    let [forced, left_out] = renderers;
+    sample.tally(|random| {
+        let scene = random_thin_air(random);
         let all = forced.render(&scene, tiny(Skipping::NONE), CAPTURE).unwrap();
         let some = left_out.render(&scene, tiny(skipping), CAPTURE).unwrap();
-        changed += usize::from(some.timings.plan.passes.iter().any(|pass| pass.reason.contains("the air is thin")));
-        worst = worst.max(largest_difference(&all.frame, &some.frame));
-    }
-    (worst, changed)
+        let is_changed = some.timings.plan.passes.iter().any(|pass| pass.reason.contains("the air is thin"));
+        (is_changed, largest_difference(&all.frame, &some.frame))
+    })
 }
 
 /// Air of a thousandth to a twentieth of the Earth's density, over ground that is black or nearly so, by day.
