@@ -80,6 +80,20 @@ fn the_window_shows_what_render_renders_and_closes_cleanly() {
     let saved = Scene::read(&folder.join("scene.toml")).unwrap();
     assert_ne!(saved.lights, scene.lights, "the sun has moved");
 
+    // Without a mouse: Tab goes to the first slider, which is the altitude's, and the arrows move it.
+    let altitude_is_changed = (8..14).any(|buttons_before| {
+        let tabs = "Tab sleep 0.1 key ".repeat(buttons_before);
+        program.key(&format!("Escape sleep 0.1 key {tabs} Tab sleep 0.2 key Right sleep 0.2 key Right sleep 0.4"));
+        program.title() == "welkin: scene *"
+    });
+    assert!(altitude_is_changed, "no arrow has moved a slider");
+    program.key("Escape sleep 0.2 key F12");
+    let moved = picture(&program, folder, 2).camera;
+    assert_eq!(moved.direction, saved.camera.direction);
+    assert!(moved.altitude_m > saved.camera.altitude_m, "{} m", moved.altitude_m);
+    program.key("ctrl+z");
+    until("the saved scene", || (program.title() == "welkin: scene").then_some(()));
+
     // Another size, then hidden and shown again: the window goes on.
     program.window("windowsize", "520 300");
     until("another size", || {
@@ -92,7 +106,7 @@ fn the_window_shows_what_render_renders_and_closes_cleanly() {
     until("the window again", || (desktop.pixel(505, 60)[2] > 60).then_some(()));
     // The button `picture` of the panel.
     program.click(120, 56);
-    assert_eq!(picture(&program, folder, 2).camera.width, 520);
+    assert_eq!(picture(&program, folder, 3).camera.width, 520);
 
     program.key("ctrl+q");
     let stderr = program.stderr.clone();
