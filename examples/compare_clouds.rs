@@ -4,7 +4,8 @@
 //! size, or several `DIR/NAME-SEED.exr` of one size and as many walks, of which the mean is taken:
 //! `cargo run --release --example compare_clouds -- DIR [--quality NAME]... [--form NAME]... [--scene NAME]...`
 //!
-//! Pixels count as cloudy where clouds hide more than half of what is behind them, and as thin from 0.03 to 0.3. With
+//! Pixels count as cloudy where clouds hide more than half of what is behind them, and as thin from 0.03 to 0.3. Pixels that the
+//! horizon runs through count as neither: a picture covers them, the truth looks through their middle. With
 //! `--pictures FOLDER` what was rendered is written there.
 
 use std::path::{Path, PathBuf};
@@ -131,13 +132,20 @@ fn mean(pictures: &[Frame]) -> Frame {
     mean
 }
 
-/// What the clouds alone hide along the ray through each pixel's centre.
+/// What the clouds alone hide along the ray through each pixel's centre; not a number in pixels on the horizon.
 fn opacity(scene: &Scene) -> Vec<f64> {
     let world = World::from_scene(scene);
     let camera = &scene.camera;
     let position = DVec3::new(0.0, 0.0, camera.altitude_m);
+    let radius_m = scene.planet.radius_m;
+    let horizon_sine = -(1.0 - (radius_m / (radius_m + camera.altitude_m.max(0.0))).powi(2)).sqrt();
     let pixel = |i: u32| {
         let (x, y) = (f64::from(i % camera.width) + 0.5, f64::from(i / camera.width) + 0.5);
+        let corners = [(-0.5, -0.5), (-0.5, 0.5), (0.5, -0.5), (0.5, 0.5)];
+        let below = corners.map(|(dx, dy)| camera.direction_through(x + dx, y + dy).z < horizon_sine);
+        if below.contains(&true) && below.contains(&false) {
+            return f64::NAN;
+        }
         let direction = camera.direction_through(x, y);
         let Some(span) = world.shape.span(position, direction) else { return 0.0 };
         let depth =

@@ -107,6 +107,10 @@ fn the_window_shows_what_render_renders_and_closes_cleanly() {
     // The button `picture` of the panel.
     program.click(120, 56);
     assert_eq!(picture(&program, folder, 3).camera.width, 520);
+    // The list of example scenes, and the third of them.
+    program.click(100, 14);
+    program.click(45, 60);
+    until("another scene", || (program.title() == "welkin: twilight").then_some(()));
 
     program.key("ctrl+q");
     let stderr = program.stderr.clone();

@@ -12,7 +12,7 @@
 #import welkin::lit_sphere::{is_sphere, sphere_radiance}
 #endif
 #import welkin::observer::{observer, DISC_COUNT, LIGHT_COUNT}
-#import welkin::pixel::{put, radiance_image, seen_through_clouds, Seen}
+#import welkin::pixel::{media_across, put, radiance_image, seen_through_clouds, Seen}
 #ifdef SURFACE
 #import welkin::pixel::{overlay, surface_image, NO_SURFACE_M}
 #endif
@@ -78,7 +78,7 @@ fn disc_radiance(view: vec3<f32>, light: u32) -> vec3<f32> {
     return coverage * profile / solid_angle_sr;
 }
 
-// What a pixel sees in one half of the view sphere.
+// What a pixel sees in one half of the view sphere, behind what was marched in a pixel.
 fn seen(pixel: vec2<u32>, view: vec3<f32>, half: HalfPixel) -> Seen {
     var seen = seen_through_clouds(pixel, view, smooth_sky(view, half.zenith_rad, half.below_horizon));
     // The last of them are only seen, and light nothing.
@@ -120,7 +120,8 @@ fn seen_by(pixel: vec2<u32>, view: vec3<f32>) -> Seen {
     // Only the pixels on the horizon look both ways. A loop and not a branch: devices that compute several pixels in
     // lockstep leave it at once where no pixel needs it.
     for (var i = 0u; i < 1u && half.share < 1.0; i++) {
-        let other = seen(pixel, view, half_pixel(view, zenith_rad, !below_horizon));
+        let across = media_across(pixel, !below_horizon);
+        let other = seen(across, view, half_pixel(view, zenith_rad, !below_horizon));
         pixel_sees.radiance = mix(other.radiance, pixel_sees.radiance, half.share);
         pixel_sees.transmittance = mix(other.transmittance, pixel_sees.transmittance, half.share);
     }

@@ -2,9 +2,11 @@
 // What becomes of the light along a ray in a pixel: clouds before it, and the images that it is written to.
 //
 // Definitions: CAPTURE (also write transmittance and distance, for files and engines), CLOUDS,
-// LOCAL_MEDIA (clouds are marched together with fog, volumes and local lights), SURFACE (something stands before the camera).
+// LOCAL_MEDIA (clouds are marched together with fog, volumes and local lights), SURFACE (something stands before the camera),
+// OVERLAY (clouds or local media).
 
 #import welkin::atmosphere::{phase_per_sr, SCATTERER_SLOTS}
+#import welkin::camera::view_direction
 #import welkin::march::view_ray
 #import welkin::observer::observer
 #import welkin::sky::{Shares, ALL}
@@ -73,6 +75,27 @@ fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
     return Overlay(vec3<f32>(0.0), vec3<f32>(1.0), ALL, ALL);
 #endif
 #endif
+}
+
+// Whose march tells what stands before the other side of the horizon, in a pixel that it runs through: the neighbour that
+// looks farthest to that side. The pixel's own march is that of its middle.
+fn media_across(pixel: vec2<u32>, below_horizon: bool) -> vec2<u32> {
+    var across = pixel;
+#ifdef OVERLAY
+    let last = vec2<i32>(textureDimensions(radiance_image)) - 1;
+    let side = select(1.0, -1.0, below_horizon);
+    var farthest = side * view_direction(pixel).z;
+    for (var i = 0; i < 4; i++) {
+        let step = select(vec2<i32>(0, 2 * (i / 2) - 1), vec2<i32>(2 * (i / 2) - 1, 0), i % 2 == 0);
+        let neighbour = vec2<u32>(clamp(vec2<i32>(pixel) + step, vec2<i32>(0), last));
+        let height = side * view_direction(neighbour).z;
+        if height > farthest {
+            farthest = height;
+            across = neighbour;
+        }
+    }
+#endif
+    return across;
 }
 
 struct Seen {
