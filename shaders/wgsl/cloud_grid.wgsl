@@ -92,3 +92,19 @@ fn grid_sample(
     let beyond = textureSampleLevel(grid, linear, grid_uvw(part, level + 1u, layer, map, height), 0.0);
     return mix(value, beyond, outward);
 }
+
+// What the grids hold of whole columns, one slice for each slab, at a place.
+fn column_sample(columns: texture_3d<f32>, linear: sampler, layer: u32, map: vec2<f32>) -> vec4<f32> {
+    let level = level_of(map);
+    let value = textureSampleLevel(columns, linear, column_uvw(level, layer, map), 0.0);
+    let outward = saturate((eccentricity(level, map) - INNER) / (1.0 - INNER));
+    if level + 1u == GRID_LEVELS || outward <= 0.0 {
+        return value;
+    }
+    return mix(value, textureSampleLevel(columns, linear, column_uvw(level + 1u, layer, map), 0.0), outward);
+}
+
+fn column_uvw(level: u32, layer: u32, map: vec2<f32>) -> vec3<f32> {
+    let slab = level * CLOUD_LAYER_COUNT + layer;
+    return vec3<f32>(map / (f32(GRID_SIZE) * cell_m(level)) + 0.5, (f32(slab) + 0.5) / f32(SLABS));
+}

@@ -29,9 +29,10 @@
 #endif
 #endif
 #ifdef CLOUDS
-#import welkin::cloud_daylight::daylight
+#import welkin::cloud_daylight::{cover_at, left_on_ground, straight_left}
 #import welkin::cloud_source::{phases, PHASE_COUNT}
 #import welkin::cloud_step::{cloud_extinction, from_clouds, CloudStep}
+#import welkin::media_march::leave_air
 #endif
 
 // Light of clouds, fog and volumes at the observer, and what they leave of the beam on the surface at the end.
@@ -133,11 +134,11 @@ fn next_step(ray: ptr<function, Ray>, t_m: f32, boundary_m: f32, here: Between, 
 }
 
 // The light that what the ray ends on receives: shares of the beam and of diffuse light in clear air.
-fn ground_share(place: Place) -> vec2<f32> {
+fn ground_share(place: Place, air: ptr<function, Air>) -> vec2<f32> {
     var share = vec2<f32>(1.0);
 #ifdef CLOUDS
-    let day = daylight(place.map, place.altitude_m);
-    share = vec2<f32>(day.through, day.diffuse);
+    let straight = straight_left(0u, place.map, place.altitude_m);
+    share = left_on_ground(straight, cover_at(place.map, place.altitude_m), (*air).clear);
 #endif
     share.x *= volume_share(place);
     return share * fog_share(place, share);
@@ -209,12 +210,17 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         pass_air(&air, &ray, transmittance, t_m, ray.end_m);
         let end = place_of(position_m(&ray, ray.end_m));
         let surface = Place(end.p, max(end.altitude_m, 0.0), end.map);
-        ground = ground_share(surface);
+        ground = ground_share(surface, &air);
         if ray.meets_ground {
             let lit = ground_lit_by_lamps(surface, ray.pixel, ray.end_m, cluster_of(ray.pixel, slice_of(ray.end_m)));
             sum.radiance += transmittance * exp(-air.depth) * atmosphere.ground_albedo / PI * lit;
         }
     }
+#ifdef CLOUDS
+    if ray.end_m >= NEVER_M {
+        leave_air(&air, &ray, transmittance, t_m);
+    }
+#endif
     let behind = transmittance * exp(-air.depth);
     textureStore(media_radiance_image, ray.pixel, vec4<f32>(sum.radiance, ground.x));
     textureStore(media_transmittance_image, ray.pixel, vec4<f32>(transmittance, ground.y));

@@ -10,13 +10,16 @@
 #import welkin::atmosphere::{atmosphere, extinction_at}
 #import welkin::camera::view_direction
 #ifdef CLOUDS
-#import welkin::cloud_daylight::{clear_fluxes, daylight, diffuse_share, ClearFluxes}
+#import welkin::cloud_daylight::{clear_fluxes, cover_at, diffuse_share, straight_left, ClearFluxes}
 #import welkin::cloud_field::cloud_layers
 #endif
 #import welkin::cloud_field::{to_map, CLOUD_LAYER_COUNT}
 #import welkin::cloud_noise::hash
 #import welkin::geometry
 #import welkin::observer::observer
+#ifdef CLOUDS
+#import welkin::tables::optical_depth_to_top
+#endif
 #import welkin::volume_field::FOG_COUNT
 #if FOG_COUNT > 0
 #import welkin::volume_field::volumes
@@ -163,9 +166,9 @@ fn pass_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>, 
         (*air).depth += step_m * extinction_at(altitude);
         let share = media * (before - exp(-(*air).depth));
 #ifdef CLOUDS
-        let day = daylight(to_map(atmosphere.radius_m, position_m(ray, middle_m)), altitude);
-        (*air).beam += day.straight * share;
-        (*air).diffuse += diffuse_share(day, (*air).clear) * share;
+        let map = to_map(atmosphere.radius_m, position_m(ray, middle_m));
+        (*air).beam += straight_left(0u, map, altitude) * share;
+        (*air).diffuse += diffuse_share(cover_at(map, altitude), (*air).clear) * share;
 #else
         (*air).beam += share;
         (*air).diffuse += share;
@@ -173,3 +176,28 @@ fn pass_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>, 
     }
 #endif
 }
+
+#ifdef CLOUDS
+// Moves on through the air beyond a distance, out into space: above all clouds, or below none.
+fn leave_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>, from_m: f32) {
+#ifdef AIR
+    var at_m = from_m;
+    if altitude_m(ray, from_m) > atmosphere.top_m {
+        // From space, the air is still ahead or never met.
+        at_m = shell_crossings_m((*ray).direction.z, atmosphere.top_m).x;
+        if at_m >= NEVER_M || at_m < from_m {
+            return;
+        }
+    }
+    let altitude = clamp(altitude_m(ray, at_m), 0.0, atmosphere.top_m);
+    let rise = (atmosphere.radius_m + observer.altitude_m) * (*ray).direction.z + at_m;
+    let mu = max(rise / (atmosphere.radius_m + altitude), geometry::horizon_mu(atmosphere.radius_m, altitude));
+    let before = exp(-(*air).depth);
+    (*air).depth += optical_depth_to_top(altitude, mu);
+    let share = media * (before - exp(-(*air).depth));
+    let map = to_map(atmosphere.radius_m, position_m(ray, at_m));
+    (*air).beam += straight_left(0u, map, altitude) * share;
+    (*air).diffuse += diffuse_share(cover_at(map, altitude), (*air).clear) * share;
+#endif
+}
+#endif

@@ -13,7 +13,7 @@
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::camera::{view_direction, pixel_angle_rad}
 #ifdef CLOUDS
-#import welkin::cloud_daylight::daylight
+#import welkin::cloud_daylight::{clear_fluxes, cover_at, left_on_ground, straight_left}
 #import welkin::cloud_field::to_map
 #endif
 #import welkin::geometry
@@ -162,8 +162,11 @@ struct Left {
 
 fn left_by_clouds(point: vec3<f32>, altitude_m: f32) -> Left {
 #ifdef CLOUDS
-    let day = daylight(to_map(atmosphere.radius_m, point), altitude_m);
-    return Left(day.straight, day.through - day.straight, day.diffuse);
+    let map = to_map(atmosphere.radius_m, point);
+    let straight = straight_left(0u, map, altitude_m);
+    let clear = clear_fluxes(altitude_m, observer.lights[0].direction.z);
+    let left = left_on_ground(straight, cover_at(map, altitude_m), clear);
+    return Left(straight, left.x - straight, left.y);
 #else
     return Left(1.0, 0.0, 1.0);
 #endif

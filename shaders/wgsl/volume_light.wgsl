@@ -6,7 +6,7 @@
 #import welkin::atmosphere::atmosphere
 #import welkin::cloud_grid::local_direction
 #ifdef CLOUDS
-#import welkin::cloud_daylight::daylight_of
+#import welkin::cloud_daylight::straight_left
 #endif
 #ifdef SURFACE_HILLS
 #import welkin::height_field::{height_below, height_field}
@@ -94,7 +94,7 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     }
     var others = 0.0;
 #ifdef CLOUDS
-    others -= log(max(daylight_of(light, place.map, place.altitude_m).straight, 1e-20));
+    others -= log(max(straight_left(light, place.map, place.altitude_m), 1e-20));
 #endif
 #ifdef SURFACE_HILLS
     let local = local_direction(place.map, observer.lights[light].direction);

@@ -27,7 +27,7 @@ pub struct Population {
     pub pipelines: u64,
     /// Pools of descriptors, one for each dispatch that is recorded or running.
     pub descriptor_pools: u64,
-    /// Command buffers that are recorded or running, each with a pool and a fence.
+    /// Command buffers, each with a pool and a fence.
     pub command_lists: u64,
     /// Pools of timestamps.
     pub query_pools: u64,

@@ -8,7 +8,6 @@ use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, 
 use gpu_allocator::{AllocationSizes, MemoryLocation};
 
 use super::census::{Census, Population};
-use super::command_list::RawList;
 use super::device::{Candidate, DeviceInfo};
 use super::error::{During, GpuError};
 use super::instance::Instance;
@@ -27,8 +26,6 @@ pub(crate) struct Context {
     debug: Option<ext::debug_utils::Device>,
     pub(crate) census: Census,
     pub(crate) pipeline_cache: PipelineCache,
-    /// Command lists that wait for a recording.
-    pub(crate) idle_lists: Mutex<Vec<RawList>>,
     /// Label of the recording that is open.
     recording: Mutex<Option<String>>,
     pub(crate) physical_device: vk::PhysicalDevice,
@@ -56,7 +53,6 @@ impl Context {
             allocator: Mutex::new(None),
             debug,
             census: Census::default(),
-            idle_lists: Mutex::default(),
             recording: Mutex::new(None),
             physical_device: candidate.raw,
             instance,
@@ -184,7 +180,6 @@ impl Drop for Context {
         unsafe {
             let _ = self.device.device_wait_idle();
             self.pipeline_cache.close(&self.device);
-            lock(&self.idle_lists).drain(..).for_each(|list| list.destroy(&self.device));
             drop(lock(&self.allocator).take());
             self.device.destroy_device(None);
         }

@@ -19,6 +19,7 @@ pub const PASS: Pass = Pass {
             "cloud_shape_bounds",
             "cloud_weather_bounds",
             "cloud_light_image",
+            "cloud_cover_image",
             "ordinates_sunlight",
             "optical_depth_table",
             "multiple_scattering_table",

@@ -7,6 +7,7 @@ mod aerial_optical_depth;
 mod aerial_perspective;
 pub mod blocks;
 mod cloud_bounds;
+mod cloud_cover;
 mod cloud_density;
 mod cloud_erosion;
 mod cloud_light;
@@ -82,13 +83,14 @@ pub const TABLES: [Pass; 12] = [
 ];
 
 /// Clouds, fog and local volumes: their noise and their light, in order.
-pub const CLOUDS: [Pass; 10] = [
+pub const CLOUDS: [Pass; 11] = [
     cloud_shape::PASS,
     cloud_erosion::PASS,
     cloud_weather::PASS,
     cloud_bounds::PASS,
     cloud_density::PASS,
     cloud_light::PASS,
+    cloud_cover::PASS,
     ordinates::EXTINCTION,
     ordinates::LIGHT,
     volume_light::PASS,

@@ -15,6 +15,7 @@ pub const PASS: Pass = Pass {
             "optical_depth_table",
             "multiple_scattering_table",
             "cloud_light_image",
+            "cloud_cover_image",
             "volume_sky_image",
             "cluster_masks",
         ],
