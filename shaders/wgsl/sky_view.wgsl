@@ -4,14 +4,19 @@
 // pixel, by welkin::sky: what remains is smooth, and a small table is enough even around the sun. So are the length of
 // air that a ray passes, whose kink at the horizontal and zero at the air's limb no table could hold, and the planet's
 // shadow on it: see welkin::shade.
+//
+// Definitions: FANS (an invocation fills FAN_COUNT columns, whose rays pass the same air; else one).
 
 #import welkin::atmosphere::SCATTERER_COUNT
 #import welkin::disc::{beam_count, beam_mu_s, beam_weight}
 #import welkin::mapping
-#import welkin::march::{air_length_m, cut_at_shadow, table_altitude_m, view_ray}
+#import welkin::march::{air_length_m, cut_at_shadow, table_altitude_m, view_ray, AirRay}
 #import welkin::observer::{light_mu_s, observer}
 #import welkin::shade::ln_lit_share
 #import welkin::sky::{layer_of, LN_SCALE, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER}
+#ifdef FANS
+#import welkin::view_integrals::{integrate_fan, FAN_COUNT}
+#endif
 #import welkin::view_integrals::{integrate, logarithm, Integrals, DARK}
 
 #ifdef HALF_TABLES
@@ -26,44 +31,125 @@ fn nu_of(view: mapping::ZenithAzimuth, mu_s: f32) -> f32 {
     return clamp(cos(view.zenith_rad) * mu_s + sines * cos(view.azimuth_rad), -1.0, 1.0);
 }
 
-// x, y: direction; z: which half of the view sphere, of which light.
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
-    let size = textureDimensions(sky_view_image);
-    if any(texel.xy >= size) {
-        return;
+struct Half {
+    light: u32,
+    below_horizon: bool,
+    altitude_m: f32,
+}
+
+fn view_of(texel: vec2<u32>, half: Half) -> mapping::ZenithAzimuth {
+    let unit = mapping::unit_from_texel(texel, vec2<f32>(textureDimensions(sky_view_image)));
+    return mapping::sky_view_from_unit(unit, half.below_horizon, observer.view);
+}
+
+// The ray along a view, with its light from a point of the disc.
+fn ray_of(view: mapping::ZenithAzimuth, half: Half, mu_s: f32) -> AirRay {
+    let nu = nu_of(view, mu_s);
+    return cut_at_shadow(view_ray(half.altitude_m, cos(view.zenith_rad), mu_s, nu, half.below_horizon));
+}
+
+fn plus(sum: Integrals, part: Integrals, weight: vec3<f32>) -> Integrals {
+    var total = sum;
+    var terms = part;
+    total.multiple += weight * terms.multiple;
+    for (var c = 0u; c < SCATTERER_COUNT; c++) {
+        total.single[c] += weight * terms.single[c];
     }
-    let light = texel.z / 2u;
-    let below_horizon = texel.z % 2u == 1u;
-    let unit = mapping::unit_from_texel(texel.xy, vec2<f32>(size));
-    let view = mapping::sky_view_from_unit(unit, below_horizon, observer.view);
-    let mu = cos(view.zenith_rad);
-    let altitude_m = table_altitude_m(observer.altitude_m);
+    return total;
+}
+
+fn integrals_of(view: mapping::ZenithAzimuth, half: Half) -> Integrals {
     var sum: Integrals;
-    for (var beam = 0u; beam < beam_count(light); beam++) {
-        let mu_s = beam_mu_s(light, beam, light_mu_s(light));
-        let ray = cut_at_shadow(view_ray(altitude_m, mu, mu_s, nu_of(view, mu_s), below_horizon));
+    for (var beam = 0u; beam < beam_count(half.light); beam++) {
+        let ray = ray_of(view, half, beam_mu_s(half.light, beam, light_mu_s(half.light)));
 #ifdef MULTIPLE_SCATTERING
-        var part = integrate(ray, multiple_scattering_table);
+        sum = plus(sum, integrate(ray, multiple_scattering_table), beam_weight(half.light, beam));
 #else
-        var part = integrate(ray);
+        sum = plus(sum, integrate(ray), beam_weight(half.light, beam));
 #endif
-        let weight = beam_weight(light, beam);
-        sum.multiple += weight * part.multiple;
-        for (var c = 0u; c < SCATTERER_COUNT; c++) {
-            sum.single[c] += weight * part.single[c];
-        }
     }
-    let per_m = 1.0 / max(air_length_m(altitude_m, mu, below_horizon), 1e-3);
-    let first = layer_of(light, below_horizon);
+    return sum;
+}
+
+fn put(texel: vec2<u32>, view: mapping::ZenithAzimuth, half: Half, integrals: Integrals) {
+    var sum = integrals;
+    let mu = cos(view.zenith_rad);
+    let per_m = 1.0 / max(air_length_m(half.altitude_m, mu, half.below_horizon), 1e-3);
+    let first = layer_of(half.light, half.below_horizon);
     let multiple = logarithm(sum.multiple * per_m) + LN_SCALE;
-    textureStore(sky_view_image, texel.xy, first + MULTIPLE_LAYER, vec4<f32>(multiple, 0.0));
-    let to_middle = view_ray(altitude_m, mu, light_mu_s(light), nu_of(view, light_mu_s(light)), below_horizon);
+    textureStore(sky_view_image, texel, first + MULTIPLE_LAYER, vec4<f32>(multiple, 0.0));
+    let mu_s = light_mu_s(half.light);
+    let to_middle = view_ray(half.altitude_m, mu, mu_s, nu_of(view, mu_s), half.below_horizon);
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
         // Where all is dark the share says nothing.
         let is_lit = sum.single[c] * per_m > vec3<f32>(DARK);
-        let share = select(vec3<f32>(0.0), vec3<f32>(ln_lit_share(light, to_middle, c)), is_lit);
+        let share = select(vec3<f32>(0.0), vec3<f32>(ln_lit_share(half.light, to_middle, c)), is_lit);
         let single = logarithm(sum.single[c] * per_m) + LN_SCALE - share;
-        textureStore(sky_view_image, texel.xy, first + SINGLE_LAYER + c, vec4<f32>(single, 0.0));
+        textureStore(sky_view_image, texel, first + SINGLE_LAYER + c, vec4<f32>(single, 0.0));
+    }
+}
+
+#ifdef FANS
+// Whether the planet's shadow cuts some ray of a fan: each then has legs of its own.
+fn meets_shadow(first: vec2<u32>, half: Half) -> bool {
+    var meets = false;
+    for (var beam = 0u; beam < beam_count(half.light); beam++) {
+        let mu_s = beam_mu_s(half.light, beam, light_mu_s(half.light));
+        for (var k = 0u; k < FAN_COUNT; k++) {
+            let ray = ray_of(view_of(first + vec2<u32>(k, 0u), half), half, mu_s);
+            meets |= ray.shadow_m.x < ray.shadow_m.y;
+        }
+    }
+    return meets;
+}
+
+// The texels of a fan, which the shadow does not meet.
+fn fill_fan(first: vec2<u32>, half: Half, width: u32) {
+    var sums: array<Integrals, FAN_COUNT>;
+    for (var beam = 0u; beam < beam_count(half.light); beam++) {
+        let mu_s = beam_mu_s(half.light, beam, light_mu_s(half.light));
+        var rays: array<AirRay, FAN_COUNT>;
+        for (var k = 0u; k < FAN_COUNT; k++) {
+            rays[k] = ray_of(view_of(first + vec2<u32>(k, 0u), half), half, mu_s);
+        }
+#ifdef MULTIPLE_SCATTERING
+        var parts = integrate_fan(rays, multiple_scattering_table);
+#else
+        var parts = integrate_fan(rays);
+#endif
+        for (var k = 0u; k < FAN_COUNT; k++) {
+            sums[k] = plus(sums[k], parts[k], beam_weight(half.light, beam));
+        }
+    }
+    for (var k = 0u; k < FAN_COUNT; k++) {
+        let texel = first + vec2<u32>(k, 0u);
+        if texel.x < width {
+            put(texel, view_of(texel, half), half, sums[k]);
+        }
+    }
+}
+#else
+const FAN_COUNT: u32 = 1u;
+#endif
+
+// x, y: direction, FAN_COUNT columns at once; z: which half of the view sphere, of which light.
+@compute @workgroup_size(4, 16)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let size = textureDimensions(sky_view_image);
+    let first = vec2<u32>(FAN_COUNT * id.x, id.y);
+    if any(first >= size) {
+        return;
+    }
+    let half = Half(id.z / 2u, id.z % 2u == 1u, table_altitude_m(observer.altitude_m));
+#ifdef FANS
+    if !meets_shadow(first, half) {
+        fill_fan(first, half, size.x);
+        return;
+    }
+#endif
+    for (var column = first.x; column < min(first.x + FAN_COUNT, size.x); column++) {
+        let texel = vec2<u32>(column, first.y);
+        let view = view_of(texel, half);
+        put(texel, view, half, integrals_of(view, half));
     }
 }

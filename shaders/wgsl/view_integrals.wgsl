@@ -1,7 +1,7 @@
 #define_import_path welkin::view_integrals
 // The integrals along a view ray that tables of the sky are made of, for unit irradiance of the light.
 //
-// Definitions: MULTIPLE_SCATTERING.
+// Definitions: MULTIPLE_SCATTERING; FAN_COUNT, rays that are walked together (where FANS is defined).
 
 #import welkin::atmosphere::{atmosphere, densities, SCATTERER_COUNT, SCATTERER_SLOTS}
 #import welkin::march::{
@@ -55,6 +55,51 @@ fn integrate(ray: AirRay) -> Integrals {
     }
     return sum;
 }
+
+#ifdef FANS
+const FAN_COUNT: u32 = #{FAN_COUNT}u;
+
+// Of rays of one zenith angle from one altitude, as columns of a table are, none of which meets the planet's shadow: they pass
+// the same air, which is walked once, and differ in how their light comes in.
+#ifdef MULTIPLE_SCATTERING
+fn integrate_fan(rays: array<AirRay, FAN_COUNT>, table: texture_2d_array<f32>) -> array<Integrals, FAN_COUNT> {
+#else
+fn integrate_fan(rays: array<AirRay, FAN_COUNT>) -> array<Integrals, FAN_COUNT> {
+#endif
+    var fan = rays;
+    let ray = fan[0];
+    var sums: array<Integrals, FAN_COUNT>;
+    var tau = vec3<f32>(0.0);
+    for (var i = 0u; i < LEG_COUNT; i++) {
+        var leg = leg_of(ray, i);
+        if leg_is_empty(leg) {
+            continue;
+        }
+        for (var n = 0u; n < NODE_COUNT; n++) {
+            let node = leg_advance(&leg, ray, n, &tau);
+            let seen = node.weight_m * exp(-tau);
+            var density = densities(node.altitude_m);
+            for (var k = 0u; k < FAN_COUNT; k++) {
+                let local = local_directions(fan[k], node);
+#ifdef MULTIPLE_SCATTERING
+                sums[k].multiple += seen * multiply_scattered_source(table, node.altitude_m, local, density);
+#endif
+                let lit = seen * exp(-optical_depth_to_top(node.altitude_m, local.mu_s));
+                for (var c = 0u; c < SCATTERER_COUNT; c++) {
+                    sums[k].single[c] += density[c] * lit;
+                }
+            }
+        }
+        leg_finish(&leg, ray, &tau);
+    }
+    for (var k = 0u; k < FAN_COUNT; k++) {
+        for (var c = 0u; c < SCATTERER_COUNT; c++) {
+            sums[k].single[c] *= atmosphere.constituents[c].scattering_per_m;
+        }
+    }
+    return sums;
+}
+#endif
 
 // Light falls exponentially into the planet's shadow and towards space; its logarithm is what interpolates well.
 fn logarithm(light: vec3<f32>) -> vec3<f32> {

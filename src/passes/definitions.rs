@@ -6,7 +6,7 @@ use welkin_shaders::{Definition, Definitions};
 use super::blocks::{
     ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count, local_light_count, volume_term_count,
 };
-use super::{lamp_froxels, local_clusters, ordinates, volume_light};
+use super::{lamp_froxels, local_clusters, ordinates, sky_view, volume_light};
 use crate::plan::{CloudScattering, Facts, Surface, TableFormat, Treatment, lattice_cell};
 use crate::probe::Orders;
 
@@ -42,7 +42,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("BAND_COUNT", directions.band),
         ("ABOVE_COUNT", directions.above),
         ("AZIMUTH_COUNT", directions.azimuths),
-        ("COSINE_COUNT", directions.below + directions.band + directions.above),
+        ("COSINE_COUNT", directions.cosines()),
         ("SLICE_COUNT", settings.froxel_size[2]),
         ("PROFILE_GROUP_COUNT", facts.profile_group_count().max(1)),
         ("GRID_GROUND_COUNT", grid.ground),
@@ -52,6 +52,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("GRID_MU_S_COUNT", settings.source_size[0]),
         ("GRID_ALTITUDE_COUNT", settings.source_size[1]),
         ("GRID_INVOCATION_COUNT", grid.count().min(MAX_INVOCATIONS)),
+        ("FAN_COUNT", sky_view::FAN_COUNT),
         ("INVOCATION_COUNT", directions.count().min(MAX_INVOCATIONS)),
         ("LATTICE_CELL", lattice_cell.unwrap_or(1)),
         ("LATTICE_PPM", (1e6 * settings.lattice_tolerance) as u32),

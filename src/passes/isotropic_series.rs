@@ -1,7 +1,8 @@
 //! Multiply scattered light as a geometric series of isotropic orders, the method of Hillaire 2020.
 
-use super::first_order::{inputs, shape, work};
+use super::first_order::{inputs, shape};
 use super::{Pass, Recording, RenderError, multiple_scattering, table_format};
+use crate::gpu::Work;
 use crate::plan::{Declaration, Treatment};
 
 const NAME: &str = "isotropic_series";
@@ -22,5 +23,7 @@ pub const PASS: Pass = Pass {
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
     let table = recording.resources.image("multiple_scattering_table", shape, table_format(recording.facts))?;
-    recording.dispatch(NAME, &[], &[("isotropic_series", &table)], work(recording.facts))
+    let [width, height, _] = shape.extent();
+    let cosines = recording.facts.settings.directions.cosines();
+    recording.dispatch(NAME, &[], &[("isotropic_series", &table)], Work::Invocations([cosines, width, height]))
 }

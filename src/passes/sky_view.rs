@@ -1,10 +1,13 @@
 //! The integrals that the sky seen from the camera's altitude is made of, for every direction and light.
 
 use super::{Pass, Recording, RenderError, table_format, view_optical_depth};
-use crate::gpu::{ImageShape, Work};
+use crate::gpu::{DeviceKind, ImageShape, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, Need, elevation_slack_rad};
 
 const NAME: &str = "sky_view";
+
+/// Columns that one invocation fills where there are few invocations: their rays pass the same air.
+pub(super) const FAN_COUNT: u32 = 4;
 
 /// The pass.
 pub const PASS: Pass = Pass {
@@ -63,5 +66,9 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let [width, height, _] = shape.extent();
     let table = recording.resources.image("sky_view_table", shape, table_format(recording.facts))?;
     let halves = 2 * recording.facts.light_slots();
-    recording.dispatch(NAME, &[], &[("sky_view_image", &table)], Work::Invocations([width, height, halves]))
+    // A GPU wants more invocations than it has columns; a processor wants less work.
+    let in_fans = recording.resources.gpu.info().kind == DeviceKind::Cpu;
+    let (columns, flags): (_, &[&str]) = if in_fans { (FAN_COUNT, &["FANS"]) } else { (1, &[]) };
+    let work = Work::Invocations([width.div_ceil(columns), height, halves]);
+    recording.dispatch(NAME, flags, &[("sky_view_image", &table)], work)
 }

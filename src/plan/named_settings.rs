@@ -29,8 +29,9 @@ impl NamedSettings {
 
 /// Defaults of `AtmosphereSettings` in Bevy 0.19 (`crates/bevy_pbr/src/atmosphere/mod.rs`): transmittance 256 x 128 texels
 /// of 40 samples, multiple scattering 32 x 32 of 64 directions of 20 samples, sky view 400 x 200 of 16 samples, aerial
-/// perspective 32³ of 10. The sky view here holds half a turn of azimuths, which is all that is not a mirror image, in each
-/// half of the sphere: 400 x 100 texels in each are as many.
+/// perspective 32³ of 10. Azimuths here are half a turn, of which the other half is the mirror image: 200 columns of a sky
+/// view are as fine as Bevy's 400, and eight cosines times four azimuths stand for 64 directions. The sky view has two halves
+/// of 100 rows.
 fn bevy_sizes() -> Settings {
     Settings {
         // Two legs of a ray are the most that have length where the sun is up.
@@ -39,8 +40,8 @@ fn bevy_sizes() -> Settings {
         optical_depth_size: [256, 128],
         multiple_scattering: MultipleScattering::IsotropicSeries,
         multiple_scattering_size: [32, 32],
-        directions: Directions { below: 3, band: 2, above: 3, azimuths: 8 },
-        sky_view_size: [400, 100],
+        directions: Directions { below: 3, band: 2, above: 3, azimuths: 4 },
+        sky_view_size: [200, 100],
         froxel_size: [32, 16, 32],
         ..Settings::of(Quality::Medium)
     }

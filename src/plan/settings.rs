@@ -67,9 +67,14 @@ pub struct Directions {
 }
 
 impl Directions {
+    /// All cosines.
+    pub fn cosines(&self) -> u32 {
+        self.below + self.band + self.above
+    }
+
     /// All directions; at most 128, which every Vulkan device takes in one workgroup.
     pub fn count(&self) -> u32 {
-        (self.below + self.band + self.above) * self.azimuths
+        self.cosines() * self.azimuths
     }
 }
 
