@@ -20,8 +20,11 @@
 
 #ifdef WHOLE_CELLS
 const COLUMNS: u32 = CELL;
+// Cells side by side: their pixels lie on few pages of memory, along which a processor fetches ahead of the writes.
+const GROUP_SIZE = vec2<u32>(32u, 1u);
 #else
 const COLUMNS: u32 = 1u;
+const GROUP_SIZE = vec2<u32>(8u, 8u);
 #endif
 const TOLERANCE: f32 = #{LATTICE_PPM}.0 * 1e-6;
 
@@ -146,7 +149,7 @@ fn holds_surface(cell: vec2<u32>, size: vec2<u32>) -> bool {
 #endif
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(GROUP_SIZE.x, GROUP_SIZE.y)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = textureDimensions(radiance_image);
     let first = id.xy * vec2<u32>(COLUMNS, CELL);
