@@ -1,6 +1,6 @@
 //! What each optimisation of the clouds saves, as ratios within one run, and the memory of their volumes; prints Markdown.
 //!
-//! `cargo run --release --example cloud_costs -- [--quality NAME]... [--rounds N] [--width PIXELS]`
+//! `cargo run --release --example cloud_costs -- [--quality NAME]... [--rounds N] [--width PIXELS] [--truth EXR] [--beside-brute-force]`
 //!
 //! A camera turns a little with each frame. Every round renders the frame in each way, one after the other, so that all of
 //! them meet the same load; medians over the rounds, of the passes `clouds` and `cloud_reconstruction`:
@@ -12,12 +12,18 @@
 //! - *light following*: the same in a frame of a sequence in which clouds and sun move, the mean over as many frames as rounds;
 //! - *brute force*: 64 steps through the layer, six looks at the field towards the light from each, eight octaves, every pixel
 //!   and nothing skipped, over a followed frame.
+//!
+//! With `--beside-brute-force` only followed frames and brute force. With a picture of the scene that the path tracer has made,
+//! also how far both are from it: the root mean square of ln(ratio) over all pixels in green, its noise taken out, of a frame
+//! that ends a turn of the camera.
 
 use std::borrow::Cow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use welkin::gpu::{DeviceRequest, Gpu};
+use welkin::frame::Frame;
+use welkin::gpu::{Clock, DeviceKind, DeviceRequest, Gpu};
+use welkin::output::read_exr;
 use welkin::passes::ShaderSources;
 use welkin::plan::{CloudScattering, CloudSettings, Decision, Outputs, Quality, Settings};
 use welkin::renderer::{Rendered, Renderer};
@@ -37,6 +43,12 @@ struct Arguments {
     /// The scene.
     #[arg(long, default_value = "scenes/clouds/fair-cumulus.toml")]
     scene: String,
+    /// A picture of the scene by the path tracer, of any size.
+    #[arg(long)]
+    truth: Option<PathBuf>,
+    /// Measures nothing but followed frames and brute force.
+    #[arg(long)]
+    beside_brute_force: bool,
 }
 
 /// Steps enough for rays that skip nothing.
@@ -70,12 +82,12 @@ struct Way {
 impl Way {
     fn new(quality: Quality, shaders: ShaderSources, clouds: CloudSettings, in_sequence: bool) -> Self {
         let gpu = Gpu::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
-        Self {
-            renderer: Renderer::with_shaders(gpu, shaders).unwrap_or_else(|error| panic!("{error}")),
-            settings: Settings { clouds, ..Settings::of(quality) },
-            in_sequence,
-            milliseconds: Vec::new(),
+        let is_processor = gpu.info().kind == DeviceKind::Cpu;
+        let mut renderer = Renderer::with_shaders(gpu, shaders).unwrap_or_else(|error| panic!("{error}"));
+        if is_processor {
+            renderer.set_clock(Clock::Processor);
         }
+        Self { renderer, settings: Settings { clouds, ..Settings::of(quality) }, in_sequence, milliseconds: Vec::new() }
     }
 
     fn render(&mut self, scene: &Scene) -> Rendered {
@@ -106,6 +118,70 @@ fn of_light(name: &str) -> bool {
     name == "cloud_density" || name == "cloud_light" || name.starts_with("ordinates")
 }
 
+/// How far a frame is from the path tracer's.
+fn rms_of_ln(found: &Frame, truth: &Frame) -> f64 {
+    const GREEN: usize = 1;
+    let errors = truth.standard_error.as_ref();
+    let pixel = |i: usize| {
+        let (a, b) = (f64::from(found.radiance[i][GREEN]), f64::from(truth.radiance[i][GREEN]));
+        let noise = errors.map_or(0.0, |errors| f64::from(errors[i][GREEN])) / b;
+        (a / b).ln().powi(2) - noise * noise
+    };
+    let sum: f64 = (0..truth.radiance.len()).map(pixel).sum();
+    (sum / truth.radiance.len() as f64).max(0.0).sqrt()
+}
+
+/// The error of the last of some frames in which the camera turns to where the truth was seen from.
+fn error_after_turn(way: &mut Way, scene: &Scene, truth: &Frame) -> f64 {
+    let mut last = None;
+    for before in (0..8).rev() {
+        let mut frame = scene.clone();
+        (frame.camera.width, frame.camera.height) = (truth.width, truth.height);
+        frame.camera.direction.azimuth_rad -= 0.01 * f64::from(before);
+        last = Some(way.render(&frame).frame);
+    }
+    last.map_or(f64::NAN, |frame| rms_of_ln(&frame, truth))
+}
+
+fn turned(scene: &Scene, round: u32) -> Scene {
+    let mut frame = scene.clone();
+    frame.camera.direction.azimuth_rad += 0.01 * f64::from(round);
+    frame
+}
+
+/// Followed frames and brute force alone.
+fn beside_brute_force(arguments: &Arguments, scene: &Scene, qualities: &[Quality]) {
+    println!(
+        "| quality | followed, ms | brute force, ms | ratio | RMS of ln, followed | brute force |\n|---|---|---|---|---|---|"
+    );
+    for &quality in qualities {
+        let whole = CloudSettings { max_steps: MANY_STEPS, ..CloudSettings::of(quality) };
+        let brute = CloudSettings { scattering: CloudScattering::OctavesAsShipped, near_samples: 6, ..whole };
+        let mut ways =
+            [Way::new(quality, ShaderSources::embedded(), whole, true), Way::new(quality, brute_force(), brute, false)];
+        let mut small = scene.clone();
+        (small.camera.width, small.camera.height) = (64, 36);
+        // Pipelines, noise and light, without the long wait for brute force at full size.
+        ways[0].render(scene);
+        ways[1].render(&small);
+        for round in 1..=arguments.rounds {
+            let frame = turned(scene, round);
+            for way in &mut ways {
+                let rendered = way.render(&frame);
+                way.milliseconds.push(time(&rendered, of_pixels));
+            }
+        }
+        let [followed, brute] = ways.each_ref().map(Way::median);
+        let errors = arguments.truth.as_ref().map(|path| {
+            let truth = read_exr(path).unwrap_or_else(|error| panic!("{error}"));
+            ways.each_mut().map(|way| error_after_turn(way, scene, &truth))
+        });
+        let [ours, theirs] =
+            errors.map_or(["–".to_owned(), "–".to_owned()], |e| e.map(|error| format!("{error:.3}")));
+        println!("| {quality} | {followed:.1} | {brute:.0} | {:.1} | {ours} | {theirs} |", brute / followed);
+    }
+}
+
 /// A frame later: clouds that drift with 10 m/s, and a sun that goes round in a day, ten times as fast.
 fn moved(scene: &Scene, round: u32) -> Scene {
     let mut frame = scene.clone();
@@ -126,11 +202,14 @@ fn main() {
         layer.wind_m_per_s = [10.0, 0.0];
     }
     println!("{}, {} x {} pixels\n", scene.name, scene.camera.width, scene.camera.height);
+    let qualities = if arguments.qualities.is_empty() { &Quality::ALL[..] } else { &arguments.qualities };
+    if arguments.beside_brute_force {
+        return beside_brute_force(&arguments, &scene, qualities);
+    }
     println!(
         "| quality | every pixel, ms | followed | nothing skipped | light marched | light anew | light following | brute force |"
     );
     println!("|---|---|---|---|---|---|---|---|");
-    let qualities = if arguments.qualities.is_empty() { &Quality::ALL[..] } else { &arguments.qualities };
     let mut memory = Vec::new();
     for &quality in qualities {
         let whole = CloudSettings { max_steps: MANY_STEPS, ..CloudSettings::of(quality) };
@@ -151,8 +230,7 @@ fn main() {
         let first = ways.each_mut().map(|way| way.render(&scene));
         let light_ms = time(&first[0], of_light);
         for round in 1..=arguments.rounds {
-            let mut frame = scene.clone();
-            frame.camera.direction.azimuth_rad += 0.01 * f64::from(round);
+            let frame = turned(&scene, round);
             for way in &mut ways {
                 let rendered = way.render(&frame);
                 way.milliseconds.push(time(&rendered, of_pixels));

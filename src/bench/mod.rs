@@ -5,6 +5,7 @@
 //! host's share alone, and the passes' times are the device's.
 
 mod frames;
+mod growth;
 mod motion;
 mod passes;
 mod series;
@@ -13,6 +14,7 @@ mod stopwatch;
 mod work;
 
 pub use frames::{FrameCase, FrameCost, frame_costs};
+pub use growth::{Growth, growth_of_frames, growth_of_reference, growth_of_tables};
 pub use motion::Motion;
 pub use passes::{PassCost, pass_costs};
 pub use series::{Fit, Series};

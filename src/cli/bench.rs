@@ -1,17 +1,16 @@
 //! `welkin bench`: what frames cost.
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use welkin::bench::{
-    Fit, FrameCase, FrameCost, Motion, PassCost, WorkCost, bake_cost, frame_costs, pass_costs, peak_memory_bytes,
-    reference_cost, start,
+    Fit, FrameCase, FrameCost, Growth, Motion, PassCost, WorkCost, bake_cost, frame_costs, growth_of_frames,
+    growth_of_reference, growth_of_tables, pass_costs, peak_memory_bytes, reference_cost, start,
 };
 use welkin::gpu::Gpu;
 use welkin::passes::{RenderError, ShaderSources};
-use welkin::plan::{NamedSettings, Quality, bake_settings};
+use welkin::plan::{NamedSettings, Quality, TableFormat, bake_settings};
 use welkin::renderer::Renderer;
 use welkin::scene::Scene;
 
@@ -43,6 +42,10 @@ pub struct Arguments {
     /// Measure starts, tables for engines at quality low, and the reference as well
     #[arg(long)]
     work: bool,
+    /// Measure how costs grow: tables with their texels, and the reference with its walks and cores; frames grow with their
+    /// pixels where there are several sizes, also without this
+    #[arg(long)]
+    growth: bool,
     /// How often each case is measured
     #[arg(long, value_name = "N", default_value_t = 7)]
     rounds: u32,
@@ -52,6 +55,9 @@ pub struct Arguments {
     /// By how much pixels may differ from what they would be if each were evaluated for itself; 0 evaluates each
     #[arg(long, value_name = "SHARE")]
     lattice_tolerance: Option<f64>,
+    /// Keep tables as half floats
+    #[arg(long)]
+    half_tables: bool,
     /// Shaders from a folder, in place of the built-in ones
     #[arg(long, value_name = "DIR")]
     shaders: Option<PathBuf>,
@@ -98,6 +104,7 @@ struct Measured {
     frames: Vec<FrameCost>,
     passes: Vec<ScenePasses>,
     work: Vec<WorkCost>,
+    growth: Vec<Growth>,
     peak_memory_bytes: Option<u64>,
 }
 
@@ -124,6 +131,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             (scene.camera.width, scene.camera.height) = (width, height);
             let mut settings = named.settings();
             settings.lattice_tolerance = arguments.lattice_tolerance.unwrap_or(settings.lattice_tolerance);
+            if arguments.half_tables {
+                settings.table_format = TableFormat::Float16;
+            }
             let name = format!("{}, {named}, {}", scene.name, motion.name());
             cases.push(FrameCase { name, scene, settings, motion, frames: arguments.frames });
         }
@@ -143,9 +153,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let work = if arguments.work { work(arguments, &gpu)? } else { Vec::new() };
     let frames = frame_costs(&gpu, &shaders, cases, arguments.rounds).map_err(failure)?;
+    let mut growth = growth_of_frames(&frames);
+    if arguments.growth {
+        for path in &arguments.scenes {
+            let scene = Scene::read(path)?;
+            for named in &arguments.quality {
+                let tables = growth_of_tables(&gpu, &shaders, &scene, named.settings(), arguments.rounds);
+                growth.extend(tables.map_err(failure)?);
+            }
+            growth.extend(growth_of_reference(&scene));
+        }
+    }
     let info = gpu.info();
     let (device, driver) = (info.name.clone(), format!("{} {}", info.driver, info.driver_version));
-    let measured = Measured { device, driver, frames, passes, work, peak_memory_bytes: peak_memory_bytes() };
+    let measured = Measured { device, driver, frames, passes, work, growth, peak_memory_bytes: peak_memory_bytes() };
     Ok(stdout::print(&if arguments.json { to_json(&measured) } else { to_markdown(&measured) })?)
 }
 
@@ -154,16 +175,32 @@ fn combinations(arguments: &Arguments) -> impl Iterator<Item = (&[u32; 2], &Name
     with_quality.flat_map(|(size, quality)| arguments.motion.iter().map(move |m| (size, quality, m.motion())))
 }
 
-/// How costs grow with pixels, for cases that were measured in several sizes.
-fn fits(frames: &[FrameCost]) -> Vec<String> {
-    let names: BTreeSet<_> = frames.iter().map(|cost| &cost.name).collect();
-    let fit = |name: &String| {
-        let same = frames.iter().filter(|cost| &cost.name == name);
-        let points: Vec<_> = same.map(|cost| (cost.pixels(), cost.processor_ms.median())).collect();
-        let Fit { exponent, bend } = Fit::of(&points)?;
-        Some(format!("{name}: processor time ∝ pixels^{exponent:.2}, within a factor of {bend:.2}."))
+/// How costs grow with size.
+fn growth_rows(all: &[Growth]) -> Vec<String> {
+    let row = |growth: &Growth| {
+        let (first, last) = (growth.points.first()?, growth.points.last()?);
+        let Fit { exponent, bend } = growth.fit()?;
+        let steps: Vec<_> = growth.steps().iter().map(|step| format!("{step:.2}")).collect();
+        let bends = growth.bend().map_or("–".to_owned(), |size| format!("{size:.0}"));
+        Some(format!(
+            "| {}, by {} | {:.0}–{:.0} | {:.2}–{:.2} | {exponent:.2}, within {bend:.2} | {} | {bends} |",
+            growth.name,
+            growth.unit,
+            first.0,
+            last.0,
+            first.1,
+            last.1,
+            steps.join(", "),
+        ))
     };
-    names.into_iter().filter_map(fit).flat_map(|line| [String::new(), line]).collect()
+    let heads =
+        ["| what | sizes | ms | exponent, factor | from size to size | bends at |", "|---|---|---|---|---|---|"];
+    let head = heads.into_iter().map(str::to_owned);
+    if all.is_empty() {
+        Vec::new()
+    } else {
+        std::iter::once(String::new()).chain(head).chain(all.iter().filter_map(row)).collect()
+    }
 }
 
 /// Starts with an empty folder of pipelines and with a filled one, tables for engines, and the reference.
@@ -211,7 +248,7 @@ fn to_markdown(measured: &Measured) -> String {
         let (name, bytes) = (&cost.name, cost.bytes);
         format!("| {name}, {width} x {height} | {ms:.2} | {spread:.0} | {per_pixel_ns:.1} | {bytes} | {ran} |")
     }));
-    lines.extend(fits(&measured.frames));
+    lines.extend(growth_rows(&measured.growth));
     if !measured.work.is_empty() {
         lines.extend([String::new(), "| work | size | processor ms | ms that passed |".to_owned()]);
         lines.push("|---|---|---|---|".to_owned());
