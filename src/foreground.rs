@@ -38,6 +38,14 @@ pub enum ForegroundError {
         /// From the top, from 0.
         row: usize,
     },
+    /// No projection makes such depths.
+    #[error("a projection between planes at {near_m} and {far_m} m; the near one must be above 0, the far one beyond it")]
+    Projection {
+        /// Of the near plane, m.
+        near_m: f64,
+        /// Of the far plane, m.
+        far_m: f64,
+    },
     /// A colour is not a radiance.
     #[error("the foreground's colour is {value:?} at column {column}, row {row}; it must be finite and at least 0")]
     Radiance {

@@ -1,6 +1,7 @@
 //! Runs a plan on a device: no physics, no Vulkan.
 
 mod bake;
+mod embedded;
 mod prices;
 mod sequence;
 mod spectral;
@@ -20,6 +21,8 @@ use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Sequence, 
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Camera, Light, Scene};
 
+pub use embedded::HostedFrame;
+pub use crate::passes::{DepthBuffer, HostDepth, HostFrame, HostLeft};
 pub use prices::{Price, prices};
 use sequence::Before;
 pub use targets::Targets;

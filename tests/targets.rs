@@ -1,10 +1,17 @@
 //! Frames drawn into images of the host's, and in pieces, are the frames that are read back.
 
 mod common;
+#[path = "../examples/vulkan_host/engine.rs"]
+mod engine;
+#[path = "../examples/vulkan_host/frames.rs"]
+mod frames;
 
 use std::time::Duration;
 
-use welkin::gpu::{Gpu, GpuImage, ImageFormat, ImageShape, NextUse, Pace, ScreenEncoding};
+use ash::vk;
+use engine::{Engine, WALLS};
+use welkin::foreground::{Depth, Foreground};
+use welkin::gpu::{DeviceRequest, Gpu, GpuError, GpuImage, HostUse, ImageFormat, ImageShape, NextUse, Pace, ScreenEncoding};
 use welkin::output::{display, screen};
 use welkin::passes::RenderError;
 use welkin::plan::{Decision, Outputs, Quality, Settings};
@@ -162,4 +169,153 @@ fn a_stopped_frame_leaves_nothing_half_done_for_the_next() {
         assert_eq!(again.timings.plan.decision("sky_view"), Some(Decision::Run));
         assert_eq!(shown(&read_back(&mut renderer, &before)), shown(&expected));
     });
+}
+
+const SIZE: [u32; 2] = [96, 64];
+
+/// What the engine draws, as a picture of distances and one of light.
+fn walls(scene: &Scene, engine: &Engine, units_per_radiance: f32) -> Foreground {
+    let mut depth = vec![f32::INFINITY; (SIZE[0] * SIZE[1]) as usize];
+    let mut light = vec![[0.0_f32; 3]; depth.len()];
+    for wall in &WALLS {
+        let [left, top, right, bottom] = engine.pixels(wall);
+        for (x, y) in (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y))) {
+            let pixel = (y * SIZE[0] + x) as usize;
+            (depth[pixel], light[pixel]) = (wall.planar_m, wall.colour.map(|value| value / units_per_radiance));
+        }
+    }
+    Foreground::new(&scene.camera, Depth::Planar, &depth, Some(&light)).unwrap()
+}
+
+/// The same frame without an engine, in its unit.
+fn headless(scene: &Scene, engine: &Engine, units_per_radiance: f32) -> Vec<[f32; 3]> {
+    let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap();
+    let foreground = walls(scene, engine, units_per_radiance);
+    let rendered = renderer.render_over(scene, settings(), Outputs::default(), &foreground).unwrap();
+    rendered.frame.radiance.iter().map(|rgb| rgb.map(|value| value * units_per_radiance)).collect()
+}
+
+/// The largest difference relative to the brighter, or to a thousandth of the picture's mean.
+fn largest_difference(found: &[[f32; 4]], expected: &[[f32; 3]]) -> f32 {
+    let all = || expected.iter().flatten();
+    let mean = all().sum::<f32>() / all().count() as f32;
+    let pairs = found.iter().flat_map(|rgba| &rgba[..3]).zip(all());
+    pairs.map(|(a, b)| (a - b).abs() / a.max(*b).max(1e-3 * mean)).fold(0.0, f32::max)
+}
+
+#[test]
+fn an_engine_gets_in_its_own_images_what_is_rendered_headless() {
+    let _alone = common::alone();
+    let clouds = "[[clouds]]\nkind = \"stratocumulus\"\n";
+    let scenes = [scene(20.0, ""), scene(4.0, ""), scene(4.0, clouds), scene(20.0, "")];
+    // Half floats round by up to 2^-11; distances are found in f32 from reversed depth.
+    for (format, units_per_radiance, bound) in
+        [(vk::Format::R32G32B32A32_SFLOAT, 1.0, 1e-4), (vk::Format::R16G16B16A16_SFLOAT, 4.0, 6e-4)]
+    {
+        let engine = Engine::new(SIZE, format, true).unwrap();
+        let pictures = frames::render(&engine, &scenes, settings(), f64::from(units_per_radiance)).unwrap();
+        let expected = scenes.each_ref().map(|scene| headless(scene, &engine, units_per_radiance));
+        for (index, (picture, expected)) in pictures.iter().zip(&expected).enumerate() {
+            let difference = largest_difference(picture, expected);
+            println!("{format:?} frame {index}: {difference:.1e}");
+            assert!(difference < bound, "{format:?} frame {index}: {difference}");
+        }
+        // Negative controls: another sun, and the frame without the engine's walls.
+        assert!(largest_difference(&pictures[0], &expected[1]) > 0.1);
+        let bare = Renderer::new(&DeviceRequest::default()).unwrap().render(&scenes[0], settings(), Outputs::default());
+        let bare: Vec<_> = bare.unwrap().frame.radiance.iter().map(|rgb| rgb.map(|l| l * units_per_radiance)).collect();
+        assert!(largest_difference(&pictures[0], &bare) > 0.1);
+        // The layer also hears of what is left when the engine closes its device.
+        assert_eq!(engine.close(), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn a_frame_that_is_given_up_leaves_nothing_for_the_next() {
+    let _alone = common::alone();
+    let engine = Engine::new(SIZE, vk::Format::R32G32B32A32_SFLOAT, true).unwrap();
+    let gpu = frames::open(&engine).unwrap();
+    let frame = frames::frame(&engine, &gpu, 1.0).unwrap();
+    let mut renderer = Renderer::on(gpu.clone()).unwrap();
+    let mut left = [HostUse::default(); 2];
+    let mut record = |renderer: &mut Renderer, slot, scene: &Scene| {
+        frames::record(&engine, &engine.slots[slot], renderer, scene, settings(), &frame, &mut left).unwrap()
+    };
+    // Its tables were never computed, though they are recorded.
+    let recorded = record(&mut renderer, 0, &scene(20.0, ""));
+    renderer.abandon(recorded);
+    left = [HostUse::default(); 2];
+    let mut record = |renderer: &mut Renderer, slot, scene: &Scene| {
+        frames::record(&engine, &engine.slots[slot], renderer, scene, settings(), &frame, &mut left).unwrap()
+    };
+    let recorded = record(&mut renderer, 1, &scene(20.0, ""));
+    engine.submit(&engine.slots[1]).unwrap();
+    let picture = engine.picture(&engine.slots[1]).unwrap();
+    let expected = headless(&scene(20.0, ""), &engine, 1.0);
+    assert!(largest_difference(&picture, &expected) < 1e-4);
+    // Nothing is read back here: the queue is the engine's.
+    let image = gpu.image("own", ImageShape::D2(8, 8), ImageFormat::R32Float).unwrap();
+    let refused = gpu.write_image(&image, &[0.0_f32; 64]);
+    assert!(matches!(refused, Err(GpuError::HostsQueue { .. })), "{refused:?}");
+    drop((recorded, renderer, frame, image, gpu));
+    assert_eq!(engine.close(), Vec::<String>::new());
+}
+
+#[test]
+fn an_engine_that_lies_about_its_images_is_told_by_the_validation_layer() {
+    let _alone = common::alone();
+    let engine = Engine::new(SIZE, vk::Format::R32G32B32A32_SFLOAT, true).unwrap();
+    let gpu = frames::open(&engine).unwrap();
+    let mut frame = frames::frame(&engine, &gpu, 1.0).unwrap();
+    // It has just drawn its walls, and does not say so.
+    frame.colour.before.stage = vk::PipelineStageFlags2::NONE;
+    frame.colour.before.access = vk::AccessFlags2::NONE;
+    let mut renderer = Renderer::on(gpu.clone()).unwrap();
+    let (slot, mut left) = (&engine.slots[0], [HostUse::default(); 2]);
+    let scene = scene(20.0, "");
+    let recorded = frames::record(&engine, slot, &mut renderer, &scene, settings(), &frame, &mut left).unwrap();
+    engine.submit(slot).unwrap();
+    engine.finish().unwrap();
+    drop((recorded, renderer, frame, gpu));
+    let messages = engine.close();
+    assert!(messages.iter().any(|message| message.contains("SYNC-HAZARD")), "{messages:?}");
+}
+
+#[test]
+fn a_host_that_lacks_something_is_told_what() {
+    let _alone = common::alone();
+    let mut engine = Engine::new(SIZE, vk::Format::R32G32B32A32_SFLOAT, true).unwrap();
+    engine.features.synchronization2 = false;
+    engine.features.robust_image_access = false;
+    engine.queue_family = 99;
+    let Err(error) = frames::open(&engine) else { panic!("it was not refused") };
+    let text = error.to_string();
+    for lacks in ["synchronization2", "robustImageAccess", "queue family 99"] {
+        assert!(text.contains(lacks), "{text}");
+    }
+    assert!(!text.contains("robustBufferAccess"), "it has that: {text}");
+    engine.features = welkin::gpu::HostFeatures { synchronization2: true, robust_image_access: true, ..engine.features };
+    engine.queue_family = 0;
+    let gpu = frames::open(&engine).unwrap();
+    let mut frame = frames::frame(&engine, &gpu, 1.0).unwrap();
+    let mut refused = |frame: &welkin::renderer::HostFrame| {
+        let mut renderer = Renderer::on(gpu.clone()).unwrap();
+        let (slot, mut left) = (&engine.slots[0], [HostUse::default(); 2]);
+        let recorded = frames::record(&engine, slot, &mut renderer, &scene(20.0, ""), settings(), frame, &mut left);
+        recorded.map(|_| ()).unwrap_err().to_string()
+    };
+    std::mem::swap(&mut frame.colour.image, &mut frame.depth.as_mut().unwrap().image.image);
+    assert!(refused(&frame).contains("Rgba16Float"));
+    std::mem::swap(&mut frame.colour.image, &mut frame.depth.as_mut().unwrap().image.image);
+    frame.depth.as_mut().unwrap().buffer = welkin::renderer::DepthBuffer::Planar;
+    assert!(refused(&frame).contains("R32Float"));
+    frame.depth.as_mut().unwrap().buffer =
+        welkin::renderer::DepthBuffer::Perspective { near_m: 10.0, far_m: 1.0, reversed: false };
+    assert!(refused(&frame).contains("10 and 1 m"));
+    frame.depth = None;
+    // SAFETY: it is refused before it is looked at.
+    let unknown = unsafe { gpu.host_image("flags", vk::Image::null(), vk::Format::R8_UINT, SIZE) };
+    assert!(unknown.err().unwrap().to_string().contains("R8_UINT"));
+    drop((frame, gpu));
+    assert_eq!(engine.close(), Vec::<String>::new());
 }

@@ -4,7 +4,7 @@ use ash::vk;
 use ash::vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stage};
 
 /// How a command uses a resource.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Use {
     pub(crate) stage: Stage,
     pub(crate) reads: Access,
@@ -80,6 +80,18 @@ impl State {
         Self { written: true, ..Self::default() }
     }
 
+    /// The state of an image that somebody else has used last, and has filled.
+    pub(crate) fn left_by(last: Use) -> Self {
+        let (layout, write_stage, write_access) = (last.layout, last.stage, last.writes);
+        Self { layout, write_stage, write_access, written: true, ..Self::default() }
+    }
+
+    /// The layout, and what whoever comes next must wait for.
+    pub(crate) fn last_use(&self) -> Use {
+        let stage = self.write_stage | self.read_stages;
+        Use { stage, reads: Access::NONE, writes: self.write_access, layout: self.layout }
+    }
+
     /// Whether anything has been written to the resource.
     pub(crate) fn is_written(&self) -> bool {
         self.written
@@ -153,9 +165,9 @@ impl Barriers {
         all.dst_access_mask |= barrier.to_access;
     }
 
-    pub(crate) fn image(&mut self, image: vk::Image, barrier: Barrier) {
+    pub(crate) fn image(&mut self, image: vk::Image, aspects: vk::ImageAspectFlags, barrier: Barrier) {
         let whole = vk::ImageSubresourceRange::default()
-            .aspect_mask(vk::ImageAspectFlags::COLOR)
+            .aspect_mask(aspects)
             .level_count(1)
             .layer_count(vk::REMAINING_ARRAY_LAYERS);
         self.images.push(

@@ -8,7 +8,7 @@ use super::census::{Counted, Kind};
 use super::context::Context;
 use super::error::{During, GpuError};
 
-/// A command buffer that is being recorded.
+/// A command buffer that is being recorded. A host's has no pool and no fence of ours, and is never submitted here.
 pub(crate) struct CommandList {
     context: Arc<Context>,
     pool: vk::CommandPool,
@@ -19,6 +19,9 @@ pub(crate) struct CommandList {
 
 impl CommandList {
     pub(crate) fn new(context: &Arc<Context>) -> Result<Self, GpuError> {
+        if context.is_hosts() {
+            return Err(GpuError::HostsQueue { action: "submit commands".to_owned() });
+        }
         let device = &context.device;
         let info = vk::CommandPoolCreateInfo::default()
             .queue_family_index(context.queue_family)
@@ -39,6 +42,12 @@ impl CommandList {
         Ok(list)
     }
 
+    /// A host's command buffer, which it has begun, ends and submits.
+    pub(crate) fn of_host(context: &Arc<Context>, raw: vk::CommandBuffer) -> Self {
+        let (pool, fence) = (vk::CommandPool::null(), vk::Fence::null());
+        Self { context: context.clone(), pool, raw, fence, _counted: context.census.count(Kind::CommandList) }
+    }
+
     fn begin(&self) -> Result<(), GpuError> {
         let once = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: the command buffer is new or has been reset.
@@ -57,6 +66,9 @@ impl CommandList {
         waits: &[vk::SemaphoreSubmitInfo],
         signals: &[vk::SemaphoreSubmitInfo],
     ) -> Result<(), GpuError> {
+        if self.pool == vk::CommandPool::null() {
+            return Err(GpuError::HostsQueue { action: "submit its command buffer".to_owned() });
+        }
         // SAFETY: the list is being recorded, and its fence is not signalled.
         unsafe { self.context.device.end_command_buffer(self.raw) }.during("vkEndCommandBuffer")?;
         self.context.submit(self.raw, self.fence, waits, signals)

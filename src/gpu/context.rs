@@ -15,12 +15,13 @@ use super::pipeline_cache::PipelineCache;
 
 const MEBIBYTE: u64 = 1 << 20;
 
-/// A logical device. Every resource keeps it alive; it goes when the last of them is gone.
+/// A logical device. Every resource keeps it alive; it goes when the last of them is gone, unless it is a host's.
 pub(crate) struct Context {
     pub(crate) device: ash::Device,
     pub(crate) info: DeviceInfo,
     pub(crate) queue_family: u32,
-    queue: Mutex<vk::Queue>,
+    /// `None` on a host's device, whose queues are the host's alone.
+    queue: Option<Mutex<vk::Queue>>,
     /// `None` only while the device is being destroyed.
     allocator: Mutex<Option<Allocator>>,
     debug: Option<ext::debug_utils::Device>,
@@ -40,16 +41,27 @@ impl Context {
         pipeline_cache: Option<&Path>,
     ) -> Result<Self, GpuError> {
         let device = create_device(&instance, &candidate)?;
-        let debug = instance.debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &device));
         // SAFETY: the device was created with one queue of this family.
         let queue = unsafe { device.get_device_queue(candidate.queue_family, 0) };
+        Self::around(device, Some(queue), instance, candidate, pipeline_cache)
+    }
+
+    /// A device that is open; without a queue it is a host's.
+    pub(crate) fn around(
+        device: ash::Device,
+        queue: Option<vk::Queue>,
+        instance: Instance,
+        candidate: Candidate,
+        pipeline_cache: Option<&Path>,
+    ) -> Result<Self, GpuError> {
+        let debug = instance.debug_utils.then(|| ext::debug_utils::Device::new(&instance.raw, &device));
         let pipeline_cache = PipelineCache::new(&device, &candidate, pipeline_cache)?;
         let context = Self {
             device,
             pipeline_cache,
             info: candidate.info,
             queue_family: candidate.queue_family,
-            queue: Mutex::new(queue),
+            queue: queue.map(Mutex::new),
             allocator: Mutex::new(None),
             debug,
             census: Census::default(),
@@ -115,13 +127,19 @@ impl Context {
             .wait_semaphore_infos(waits)
             .signal_semaphore_infos(signals);
         // SAFETY: nobody else uses the queue meanwhile; the command buffer has ended.
-        self.with_queue(|queue| unsafe { self.device.queue_submit2(queue, &[submission], fence) })
+        self.with_queue("submit commands", |queue| unsafe { self.device.queue_submit2(queue, &[submission], fence) })?
             .during("vkQueueSubmit2")
     }
 
     /// Keeps other threads from the queue while it is used.
-    pub(crate) fn with_queue<T>(&self, with: impl FnOnce(vk::Queue) -> T) -> T {
-        with(*lock(&self.queue))
+    pub(crate) fn with_queue<T>(&self, action: &str, with: impl FnOnce(vk::Queue) -> T) -> Result<T, GpuError> {
+        let queue = self.queue.as_ref().ok_or_else(|| GpuError::HostsQueue { action: action.to_owned() })?;
+        Ok(with(*lock(queue)))
+    }
+
+    /// Whether a host owns the device.
+    pub(crate) fn is_hosts(&self) -> bool {
+        self.queue.is_none()
     }
 
     /// Gives a Vulkan object a name in validation messages and debuggers.
@@ -176,12 +194,17 @@ impl Context {
 
 impl Drop for Context {
     fn drop(&mut self) {
-        // SAFETY: no resource is left, as each keeps the context; the allocator's blocks go before the device.
+        // SAFETY: no resource is left, as each keeps the context; the allocator's blocks go before the device. A host has
+        // promised that its device is alive and uses nothing of ours any more.
         unsafe {
-            let _ = self.device.device_wait_idle();
+            if !self.is_hosts() {
+                let _ = self.device.device_wait_idle();
+            }
             self.pipeline_cache.close(&self.device);
             drop(lock(&self.allocator).take());
-            self.device.destroy_device(None);
+            if !self.is_hosts() {
+                self.device.destroy_device(None);
+            }
         }
     }
 }

@@ -126,7 +126,7 @@ fn select(candidates: Vec<Candidate>, requested: Option<&str>) -> Result<Candida
     }
 }
 
-fn candidate(owner: &Instance, device: vk::PhysicalDevice) -> Candidate {
+pub(super) fn candidate(owner: &Instance, device: vk::PhysicalDevice) -> Candidate {
     let instance = &owner.raw;
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);

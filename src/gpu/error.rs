@@ -166,6 +166,28 @@ pub enum GpuError {
         /// The device's name.
         device: String,
     },
+    /// A host's device lacks what is needed, or was made without it.
+    #[error("the host's device {device} lacks {}; make it with them: see `HostDevice`", missing.join(", "))]
+    HostLacks {
+        /// The device's name.
+        device: String,
+        /// What it lacks, in Vulkan's words.
+        missing: Vec<String>,
+    },
+    /// A host's image cannot be used.
+    #[error("the host's image `{name}`: {reason}")]
+    HostImage {
+        /// What it is for.
+        name: String,
+        /// What is wrong, and what is allowed.
+        reason: String,
+    },
+    /// On a host's device nothing is submitted, and so nothing is read back.
+    #[error("cannot {action}: the queues are the host's; record into a command buffer of its own")]
+    HostsQueue {
+        /// What was to be done.
+        action: String,
+    },
     /// The host's elements do not fit a resource.
     #[error("`{name}` has {expected} bytes, but {found} bytes were given or asked for")]
     Size {

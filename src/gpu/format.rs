@@ -3,7 +3,7 @@
 use ash::vk;
 use welkin_shaders::StorageFormat;
 
-/// The formats of images.
+/// The formats of images. Those after the first four are of a host's images, which are only sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ImageFormat {
     /// Four 32-bit floats.
@@ -14,16 +14,68 @@ pub enum ImageFormat {
     R32Float,
     /// Four bytes that stand for [0, 1].
     Rgba8Unorm,
+    /// Small floats without a sign: red and green of 11 bits, blue of 10.
+    Rg11b10Float,
+    /// Depth, a 32-bit float.
+    Depth32Float,
+    /// Depth of 16 bits that stand for [0, 1].
+    Depth16Unorm,
+    /// Depth of 24 bits that stand for [0, 1], and a stencil.
+    Depth24UnormStencil8,
+    /// Depth, a 32-bit float, and a stencil.
+    Depth32FloatStencil8,
 }
 
 impl ImageFormat {
+    const ALL: [Self; 9] = [
+        Self::Rgba32Float,
+        Self::Rgba16Float,
+        Self::R32Float,
+        Self::Rgba8Unorm,
+        Self::Rg11b10Float,
+        Self::Depth32Float,
+        Self::Depth16Unorm,
+        Self::Depth24UnormStencil8,
+        Self::Depth32FloatStencil8,
+    ];
+
     /// Bytes of a texel.
     pub const fn texel_bytes(self) -> u64 {
         match self {
             Self::Rgba32Float => 16,
-            Self::Rgba16Float => 8,
-            Self::R32Float | Self::Rgba8Unorm => 4,
+            Self::Rgba16Float | Self::Depth32FloatStencil8 => 8,
+            Self::R32Float | Self::Rgba8Unorm | Self::Rg11b10Float => 4,
+            Self::Depth32Float | Self::Depth24UnormStencil8 => 4,
+            Self::Depth16Unorm => 2,
         }
+    }
+
+    /// Whether it holds depth.
+    pub const fn is_depth(self) -> bool {
+        matches!(
+            self,
+            Self::Depth32Float | Self::Depth16Unorm | Self::Depth24UnormStencil8 | Self::Depth32FloatStencil8
+        )
+    }
+
+    /// Which of these a Vulkan format is.
+    pub(crate) fn of(format: vk::Format) -> Option<Self> {
+        Self::ALL.into_iter().find(|known| known.vulkan() == format)
+    }
+
+    /// All that an image of this format has.
+    pub(crate) fn aspects(self) -> vk::ImageAspectFlags {
+        match self {
+            Self::Depth24UnormStencil8 | Self::Depth32FloatStencil8 => {
+                vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL
+            }
+            _ => self.sampled_aspect(),
+        }
+    }
+
+    /// What shaders see of it.
+    pub(crate) const fn sampled_aspect(self) -> vk::ImageAspectFlags {
+        if self.is_depth() { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR }
     }
 
     pub(crate) const fn vulkan(self) -> vk::Format {
@@ -32,16 +84,22 @@ impl ImageFormat {
             Self::Rgba16Float => vk::Format::R16G16B16A16_SFLOAT,
             Self::R32Float => vk::Format::R32_SFLOAT,
             Self::Rgba8Unorm => vk::Format::R8G8B8A8_UNORM,
+            Self::Rg11b10Float => vk::Format::B10G11R11_UFLOAT_PACK32,
+            Self::Depth32Float => vk::Format::D32_SFLOAT,
+            Self::Depth16Unorm => vk::Format::D16_UNORM,
+            Self::Depth24UnormStencil8 => vk::Format::D24_UNORM_S8_UINT,
+            Self::Depth32FloatStencil8 => vk::Format::D32_SFLOAT_S8_UINT,
         }
     }
 
-    /// The same format as a WGSL storage texture declares it.
-    pub(crate) const fn storage(self) -> StorageFormat {
+    /// The same format as a WGSL storage texture declares it; none for formats that are only sampled.
+    pub(crate) const fn storage(self) -> Option<StorageFormat> {
         match self {
-            Self::Rgba32Float => StorageFormat::Rgba32Float,
-            Self::Rgba16Float => StorageFormat::Rgba16Float,
-            Self::R32Float => StorageFormat::R32Float,
-            Self::Rgba8Unorm => StorageFormat::Rgba8Unorm,
+            Self::Rgba32Float => Some(StorageFormat::Rgba32Float),
+            Self::Rgba16Float => Some(StorageFormat::Rgba16Float),
+            Self::R32Float => Some(StorageFormat::R32Float),
+            Self::Rgba8Unorm => Some(StorageFormat::Rgba8Unorm),
+            _ => None,
         }
     }
 }

@@ -132,6 +132,8 @@ pub(crate) struct ImageInner {
     pub(crate) raw: vk::Image,
     pub(crate) view: vk::ImageView,
     allocation: Option<Allocation>,
+    /// Whose it is: a host destroys its own.
+    is_hosts: bool,
     /// After all that has been submitted.
     pub(crate) state: Mutex<State>,
     _counted: Counted,
@@ -157,6 +159,7 @@ impl ImageInner {
             raw,
             view: vk::ImageView::null(),
             allocation: None,
+            is_hosts: false,
             state: Mutex::default(),
             _counted: context.census.count(Kind::Image),
         };
@@ -167,19 +170,57 @@ impl ImageInner {
             let allocation = context.allocate(name, requirements, MemoryLocation::GpuOnly, false)?;
             let allocation = image.allocation.insert(allocation);
             device.bind_image_memory(raw, allocation.memory(), allocation.offset()).during("vkBindImageMemory")?;
-            let whole = vk::ImageSubresourceRange::default()
-                .aspect_mask(vk::ImageAspectFlags::COLOR)
-                .level_count(1)
-                .layer_count(shape.layers());
-            let view = vk::ImageViewCreateInfo::default()
-                .image(raw)
-                .view_type(shape.types().1)
-                .format(format.vulkan())
-                .subresource_range(whole);
-            image.view = device.create_image_view(&view, None).during("vkCreateImageView")?;
         }
-        context.name(image.view, name);
+        image.make_view()?;
         Ok(image)
+    }
+
+    /// An image that a host has made and destroys.
+    ///
+    /// # Safety
+    /// The image is of the context's device, has this shape and format and one mip level, and outlives what is returned.
+    pub(super) unsafe fn of_host(
+        context: &Arc<Context>,
+        name: &str,
+        raw: vk::Image,
+        shape: ImageShape,
+        format: ImageFormat,
+    ) -> Result<Self, GpuError> {
+        let mut image = Self {
+            context: context.clone(),
+            name: name.to_owned(),
+            shape,
+            format,
+            raw,
+            view: vk::ImageView::null(),
+            allocation: None,
+            is_hosts: true,
+            state: Mutex::default(),
+            _counted: context.census.count(Kind::Image),
+        };
+        image.make_view()?;
+        Ok(image)
+    }
+
+    fn make_view(&mut self) -> Result<(), GpuError> {
+        let whole = vk::ImageSubresourceRange::default()
+            .aspect_mask(self.format.sampled_aspect())
+            .level_count(1)
+            .layer_count(self.shape.layers());
+        let view = vk::ImageViewCreateInfo::default()
+            .image(self.raw)
+            .view_type(self.shape.types().1)
+            .format(self.format.vulkan())
+            .subresource_range(whole);
+        // SAFETY: the image is alive, has memory, and is of this shape and format.
+        self.view = unsafe { self.context.device.create_image_view(&view, None) }.during("vkCreateImageView")?;
+        self.context.name(self.view, &self.name);
+        Ok(())
+    }
+
+    /// What a barrier covers.
+    pub(crate) fn aspects(&self) -> vk::ImageAspectFlags {
+        self.format.aspects()
     }
 }
 
@@ -188,7 +229,9 @@ impl Drop for ImageInner {
         // SAFETY: recordings keep what they use until it is done; null handles are ignored.
         unsafe {
             self.context.device.destroy_image_view(self.view, None);
-            self.context.device.destroy_image(self.raw, None);
+            if !self.is_hosts {
+                self.context.device.destroy_image(self.raw, None);
+            }
         }
         if let Some(allocation) = self.allocation.take() {
             self.context.free(allocation);

@@ -12,7 +12,7 @@ use super::error::{During, GpuError};
 use super::surface::{Surface, Window};
 use super::validation::{LAYER, Validation, ValidationLog};
 
-/// A Vulkan instance with its messenger; destroys both.
+/// A Vulkan instance with its messenger; destroys both, but for a host's.
 pub(crate) struct Instance {
     pub(crate) raw: ash::Instance,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
@@ -23,8 +23,8 @@ pub(crate) struct Instance {
     /// Where pictures are shown, if anywhere.
     #[cfg(feature = "window")]
     pub(crate) surface: Option<Surface>,
-    /// Keeps the loader's library open.
-    pub(crate) entry: ash::Entry,
+    /// Keeps the loader's library open; none for a host's instance.
+    pub(crate) entry: Option<ash::Entry>,
 }
 
 impl Instance {
@@ -37,8 +37,23 @@ impl Instance {
     #[cfg(feature = "window")]
     pub(crate) fn with_window(validation: Validation, window: Arc<dyn Window>) -> Result<Self, GpuError> {
         let mut instance = Self::with_extensions(validation, Surface::extensions(window.as_ref())?)?;
-        instance.surface = Some(Surface::new(&instance.entry, &instance.raw, window)?);
+        if let Some(entry) = &instance.entry {
+            instance.surface = Some(Surface::new(entry, &instance.raw, window)?);
+        }
         Ok(instance)
+    }
+
+    /// One that a host has made, keeps alive and destroys. `debug_utils`: whether it has `VK_EXT_debug_utils`.
+    pub(crate) fn of_host(raw: ash::Instance, debug_utils: bool) -> Self {
+        Self {
+            raw,
+            messenger: None,
+            debug_utils,
+            log: ValidationLog::default(),
+            #[cfg(feature = "window")]
+            surface: None,
+            entry: None,
+        }
     }
 
     /// Whether pictures are shown.
@@ -80,10 +95,11 @@ impl Instance {
             log,
             #[cfg(feature = "window")]
             surface: None,
-            entry,
+            entry: None,
         };
+        let entry = instance.entry.insert(entry);
         if validate && debug_utils {
-            let functions = ext::debug_utils::Instance::new(&instance.entry, &instance.raw);
+            let functions = ext::debug_utils::Instance::new(entry, &instance.raw);
             // SAFETY: the log lives as long as the instance.
             let messenger = unsafe { functions.create_debug_utils_messenger(&instance.log.messenger(), None) }
                 .during("vkCreateDebugUtilsMessengerEXT")?;
@@ -104,7 +120,9 @@ impl Drop for Instance {
             if let Some((functions, messenger)) = self.messenger.take() {
                 functions.destroy_debug_utils_messenger(messenger, None);
             }
-            self.raw.destroy_instance(None);
+            if self.entry.is_some() {
+                self.raw.destroy_instance(None);
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A [`Gpu`] makes images, buffers, samplers and pipelines. [`Gpu::record`] starts a list of dispatches, which bind
 //! resources by the names of the WGSL's variables; the barriers between them follow from what the passes declare.
-//! With the feature `window`, a `Presenter` shows images in a window.
+//! With the feature `window`, a `Presenter` shows images in a window. A [`HostDevice`] is one that an engine owns.
 //! Knows nothing of what is computed.
 
 mod barrier;
@@ -15,6 +15,7 @@ mod device;
 mod error;
 mod format;
 mod heap;
+mod host;
 mod image;
 mod instance;
 mod pace;
@@ -44,6 +45,7 @@ pub use device::{DeviceInfo, DeviceKind, DeviceRequest, Limits};
 pub use error::GpuError;
 pub use format::{Filtering, ImageFormat, ScreenEncoding};
 pub use heap::give_back_freed_memory;
+pub use host::{HOST_EXTENSIONS, HostCommands, HostDevice, HostFeatures, HostImage, HostRecorded, HostUse};
 pub use image::{GpuImage, ImageShape, NextUse};
 pub use pace::Pace;
 pub use pipeline::{MAX_UNIFORM_BUFFERS, Pipeline};

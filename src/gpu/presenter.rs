@@ -202,7 +202,7 @@ impl Presenter {
         self.cost += started.elapsed();
         slot.in_flight = true;
         self.next = (self.next + 1) % FRAMES_IN_FLIGHT;
-        match self.context.with_queue(|queue| swapchain.present(queue, index)) {
+        match self.context.with_queue("show a picture", |queue| swapchain.present(queue, index))? {
             Ok(fits) => self.stale |= !fits,
             Err(vk::Result::ERROR_OUT_OF_DATE_KHR | vk::Result::ERROR_SURFACE_LOST_KHR) => self.stale = true,
             Err(result) => return Err(GpuError::Vulkan { call: "vkQueuePresentKHR", result }.into()),
@@ -223,7 +223,8 @@ impl Presenter {
 
     /// Lets a library fill its textures, with a queue and a pool that nobody else uses meanwhile.
     pub fn upload<T>(&self, with: impl FnOnce(vk::Queue, vk::CommandPool) -> T) -> T {
-        self.context.with_queue(|queue| with(queue, self.upload_pool))
+        let queue = |queue| with(queue, self.upload_pool);
+        self.context.with_queue("fill textures", queue).expect("a presenter's device has a queue")
     }
 
     /// Waits until the device has drawn everything.
@@ -234,7 +235,8 @@ impl Presenter {
         self.slots.iter_mut().try_for_each(Slot::finish)?;
         // Showing has no fence: only an idle queue says that it is done with the images.
         // SAFETY: the lock keeps other threads from the queue.
-        self.context.with_queue(|queue| unsafe { self.context.device.queue_wait_idle(queue) }).during("vkQueueWaitIdle")
+        let wait = |queue| unsafe { self.context.device.queue_wait_idle(queue) };
+        self.context.with_queue("wait", wait)?.during("vkQueueWaitIdle")
     }
 }
 
@@ -284,7 +286,7 @@ fn record<E>(
         let (to_stage, to_access, to_layout) = (stage, access, layout);
         let barrier = Barrier { from_stage, from_access, to_stage, to_access, from_layout, to_layout };
         let mut barriers = Barriers::default();
-        barriers.image(image, barrier);
+        barriers.image(image, vk::ImageAspectFlags::COLOR, barrier);
         barriers.record(device, commands);
     };
     become_layout(Stage::ALL_TRANSFER, Access::TRANSFER_WRITE, Layout::TRANSFER_DST_OPTIMAL);

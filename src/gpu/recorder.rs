@@ -67,9 +67,10 @@ pub struct Commands {
 
 /// What the device uses until the list is done.
 #[derive(Default)]
-struct Kept {
+pub(super) struct Kept {
     descriptors: Vec<Descriptors>,
     data: Vec<BufferInner>,
+    staging: Vec<BufferInner>,
     pipelines: Vec<Pipeline>,
     samplers: Vec<Sampler>,
 }
@@ -81,7 +82,16 @@ impl Commands {
         clock: Option<Clock>,
         pace: Option<Pace>,
     ) -> Result<Self, GpuError> {
-        let list = CommandList::new(context)?;
+        Self::into_list(context, CommandList::new(context)?, label, clock, pace)
+    }
+
+    pub(super) fn into_list(
+        context: &Arc<Context>,
+        list: CommandList,
+        label: &str,
+        clock: Option<Clock>,
+        pace: Option<Pace>,
+    ) -> Result<Self, GpuError> {
         context.open_recording(label)?;
         context.begin_label(list.raw, label);
         Ok(Self {
@@ -174,6 +184,27 @@ impl Commands {
         Ok(())
     }
 
+    /// Fills a storage buffer from the host, between what is recorded before and after.
+    ///
+    /// # Errors
+    /// [`GpuError::Size`] unless there are as many bytes as the buffer has; memory is short.
+    pub fn upload(&mut self, buffer: &GpuBuffer, content: &[u8]) -> Result<(), GpuError> {
+        buffer.0.check_size(content.len() as u64)?;
+        let staging = BufferInner::staging(&self.context, buffer.name(), buffer.bytes(), true)?;
+        staging.write_mapped(content)?;
+        let next = Use::copy_to(vk::ImageLayout::UNDEFINED);
+        let mut barriers = Barriers::default();
+        if let Some(barrier) = self.state(Resource::Buffer(buffer)).and_then(|state| state.next(next)) {
+            barriers.buffer(barrier);
+        }
+        barriers.record(&self.context.device, self.list.raw);
+        let region = vk::BufferCopy::default().size(buffer.bytes());
+        // SAFETY: the list is being recorded, and keeps both buffers, which are of one size, until it is done.
+        unsafe { self.context.device.cmd_copy_buffer(self.list.raw, staging.raw, buffer.0.raw, &[region]) };
+        self.kept.staging.push(staging);
+        Ok(())
+    }
+
     /// Fills a storage buffer with zeros.
     pub fn clear(&mut self, buffer: &GpuBuffer) {
         let mut barriers = Barriers::default();
@@ -191,7 +222,7 @@ impl Commands {
             self.state(Resource::Image(image)).and_then(|state| state.next(Use::read_by_others(next.layout())));
         let mut barriers = Barriers::default();
         if let Some(barrier) = barrier {
-            barriers.image(image.0.raw, barrier);
+            barriers.image(image.0.raw, image.0.aspects(), barrier);
         }
         barriers.record(&self.context.device, self.list.raw);
     }
@@ -338,7 +369,9 @@ impl Commands {
             let Some(next): Option<Use> = *needs else { continue };
             let Some(barrier) = self.state(*resource).and_then(|state| state.next(next)) else { continue };
             match resource {
-                Resource::Image(image) | Resource::Sampled(image, _) => barriers.image(image.0.raw, barrier),
+                Resource::Image(image) | Resource::Sampled(image, _) => {
+                    barriers.image(image.0.raw, image.0.aspects(), barrier);
+                }
                 _ => barriers.buffer(barrier),
             }
         }
@@ -393,18 +426,51 @@ impl Commands {
         Ok(())
     }
 
+    /// Starts from what somebody else has done to an image.
+    pub(super) fn take_over(&mut self, image: &GpuImage, last: Use) {
+        self.images.insert(image.0.raw, (image.clone(), State::left_by(last)));
+    }
+
+    /// Makes an image ready for what somebody else does with it, or leaves it as it is; says how that is.
+    pub(super) fn hand_back(&mut self, image: &GpuImage, next: Option<Use>) -> Use {
+        let mut barriers = Barriers::default();
+        let aspects = image.0.aspects();
+        let Some(state) = self.state(Resource::Image(image)) else { return Use::default() };
+        let barrier = next.and_then(|next| state.next(next));
+        let left = next.unwrap_or_else(|| state.last_use());
+        if let Some(barrier) = barrier {
+            barriers.image(image.0.raw, aspects, barrier);
+        }
+        barriers.record(&self.context.device, self.list.raw);
+        left
+    }
+
+    /// Ends a recording into a host's command buffer; what the device will use must be kept until it has.
+    pub(super) fn hand_over(mut self) -> (Kept, Vec<GpuImage>, Vec<GpuBuffer>) {
+        self.context.end_label(self.list.raw);
+        self.note_states();
+        let images = std::mem::take(&mut self.images).into_values().map(|(image, _)| image).collect();
+        let buffers = std::mem::take(&mut self.buffers).into_values().map(|(buffer, _)| buffer).collect();
+        (std::mem::take(&mut self.kept), images, buffers)
+    }
+
     /// Runs the list and notes what it has done to its resources.
     fn flush(&mut self) -> Result<(), GpuError> {
         // A label that is open across lists would be ended where it never began.
         self.context.end_label(self.list.raw);
         self.list.submit_and_wait()?;
+        self.note_states();
+        Ok(())
+    }
+
+    /// What comes next starts from what this has done.
+    fn note_states(&self) {
         for (image, state) in self.images.values() {
             *lock(&image.0.state) = *state;
         }
         for (buffer, state) in self.buffers.values() {
             *lock(&buffer.0.state) = *state;
         }
-        Ok(())
     }
 }
 

@@ -132,7 +132,7 @@ fn fits(kind: &BindingKind, resource: &Resource) -> bool {
         }
         (&BindingKind::SampledTexture { dimension }, Resource::Image(image)) => image.shape().dimension() == dimension,
         (&BindingKind::StorageTexture { format, dimension, .. }, Resource::Image(image)) => {
-            image.shape().dimension() == dimension && image.format().storage() == format
+            image.shape().dimension() == dimension && image.format().storage() == Some(format)
         }
         (&BindingKind::CombinedTexture { dimension }, Resource::Sampled(image, _)) => {
             image.shape().dimension() == dimension

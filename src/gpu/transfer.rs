@@ -96,7 +96,7 @@ fn with_image(
     let mut state = *lock(&image.0.state);
     let mut barriers = Barriers::default();
     if let Some(barrier) = state.next(next) {
-        barriers.image(image.0.raw, barrier);
+        barriers.image(image.0.raw, image.0.aspects(), barrier);
     }
     barriers.record(&context.device, list.raw);
     record(&list);

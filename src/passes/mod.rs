@@ -25,6 +25,9 @@ mod first_source;
 mod foreground;
 mod higher_order;
 mod higher_source;
+mod host_colour;
+mod host_frame;
+mod host_surface;
 mod interpolate;
 mod isotropic_series;
 mod lamp_froxels;
@@ -47,6 +50,7 @@ mod volume_light;
 
 pub use definitions::definitions;
 pub use foreground::upload as upload_foreground;
+pub use host_frame::{DepthBuffer, HostDepth, HostFrame, HostLeft, HostRecording};
 pub use probe::{download as download_answers, record as record_probe, upload as upload_rays};
 pub use recording::{Parameters, Recording};
 pub use resources::Resources;
@@ -110,6 +114,12 @@ pub const FRAME: [Pass; 10] = [
     colour::PASS,
     display::PASS,
 ];
+
+/// What a host has drawn, before the frame's passes.
+pub const HOST_SURFACE: Pass = host_surface::PASS;
+
+/// Into the host's picture, after them.
+pub const HOST_COLOUR: Pass = host_colour::PASS;
 
 /// Images of a frame, which are filled anew for every group of wavelengths or gather all of them.
 pub const SHARED_IMAGES: [&str; 8] = [

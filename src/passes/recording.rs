@@ -9,8 +9,8 @@ use super::blocks::{
     cosine_nodes, emission_block, gauss_nodes, grid_nodes, height_field_block, lamps, legendre_moments,
     local_light_blocks, observer_block, volume_blocks, volume_samples, volume_terms,
 };
-use super::{RenderError, Resources, definitions, ordinates};
-use crate::gpu::{Commands, GpuBuffer, GpuImage, Resource, Work};
+use super::{HostFrame, HostLeft, RenderError, Resources, definitions, ordinates};
+use crate::gpu::{Commands, Completed, GpuBuffer, GpuImage, Resource, Work};
 use crate::plan::Facts;
 
 /// Parameter blocks of a frame, by the names of the shaders' variables.
@@ -53,7 +53,6 @@ impl<'a> Recording<'a> {
     /// Starts a frame whose dispatches are timed.
     pub fn new(label: &str, facts: &'a Facts<'a>, resources: &'a mut Resources) -> Result<Self, RenderError> {
         resources.begin_recording();
-        // Storage buffers among the parameters must be filled before recording starts.
         resources.fill_buffer("legendre_moments", &legendre_moments(facts, facts.degree_count()))?;
         if !facts.emitters.is_empty() {
             resources.fill_buffer("zonal_moments", &legendre_moments(facts, ZONAL_COUNT))?;
@@ -82,11 +81,8 @@ impl<'a> Recording<'a> {
         if let Some(problem) = ordinates::problem(facts) {
             resources.fill_buffer("ordinates", &problem.block())?;
         }
-        let commands = match (&resources.pace, resources.clock) {
-            (Some(pace), _) => resources.gpu.record_paced(label, pace)?,
-            (None, Some(clock)) => resources.gpu.record_timed_by(label, clock)?,
-            (None, None) => resources.gpu.record_timed(label)?,
-        };
+        let mut commands = commands(label, resources)?;
+        resources.record_uploads(&mut commands)?;
         Ok(Self { facts, resources, parameters: Parameters::new(facts), definitions: definitions(facts), commands })
     }
 
@@ -127,10 +123,38 @@ impl<'a> Recording<'a> {
         }
     }
 
-    /// Runs what was recorded.
-    pub fn finish(self) -> Result<crate::gpu::Completed, RenderError> {
-        Ok(self.commands.submit_and_wait()?)
+    /// Runs what was recorded, or leaves it to the host that it was recorded for.
+    pub fn finish(self) -> Result<Completed, RenderError> {
+        let Self { resources, mut commands, .. } = self;
+        let completed = match &mut resources.host {
+            None => commands.submit_and_wait()?,
+            Some(host) => {
+                let mut left = |image| commands.hand_back_to_host(image);
+                let depth = host.frame.depth.as_ref().map(|depth| left(&depth.image));
+                let left = HostLeft { colour: left(&host.frame.colour), depth };
+                host.recorded = Some((commands.hand_over_to_host(), left));
+                Completed { times: Vec::new(), clock: None }
+            }
+        };
+        resources.finish_uploads();
+        Ok(completed)
     }
+}
+
+/// What a frame is recorded with.
+fn commands(label: &str, resources: &mut Resources) -> Result<Commands, RenderError> {
+    let of_host = resources.host.as_mut().and_then(|host| host.commands.take());
+    if let Some(of_host) = of_host {
+        let mut commands = resources.gpu.record_for_host(label, of_host)?;
+        let images = resources.host_frame().into_iter().flat_map(HostFrame::images);
+        images.for_each(|image| commands.take_over_from_host(image));
+        return Ok(commands);
+    }
+    Ok(match (&resources.pace, resources.clock) {
+        (Some(pace), _) => resources.gpu.record_paced(label, pace)?,
+        (None, Some(clock)) => resources.gpu.record_timed_by(label, clock)?,
+        (None, None) => resources.gpu.record_timed(label)?,
+    })
 }
 
 /// Records a dispatch of a pass's shader; see [`Recording::dispatch`].

@@ -6,9 +6,9 @@ use welkin_shaders::{Definitions, ParameterBuffers, Shader};
 
 use super::blocks::LampFields;
 use super::pipelines::Pipelines;
-use super::{RenderError, ShaderSources};
+use super::{HostRecording, RenderError, ShaderSources};
 use crate::gpu::{
-    AddressMode, Clock, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, NextUse, Pace,
+    AddressMode, Clock, Commands, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, NextUse, Pace,
     Pipeline, Sampler, ScreenEncoding,
 };
 use crate::plan::TableFormat;
@@ -23,6 +23,8 @@ pub struct Resources {
     buffers: BTreeMap<&'static str, GpuBuffer>,
     /// What the host has filled buffers with.
     filled: BTreeMap<&'static str, Vec<u8>>,
+    /// What the next recording copies into buffers.
+    uploads: Vec<(GpuBuffer, Vec<u8>)>,
     /// Those of other groups of wavelengths than the one at the front.
     parked: Vec<Parked>,
     group: usize,
@@ -41,6 +43,8 @@ pub struct Resources {
     pub lamp_fields: LampFields,
     /// Images of the host's that a frame is drawn into, and what it does with them next.
     pub targets: Vec<(&'static str, GpuImage, NextUse)>,
+    /// The frame of a host's that is being recorded.
+    pub host: Option<HostRecording>,
 }
 
 /// Images and buffers of a group that is not at the front.
@@ -90,6 +94,7 @@ impl Resources {
             images: BTreeMap::new(),
             buffers: BTreeMap::new(),
             filled: BTreeMap::new(),
+            uploads: Vec::new(),
             parked: Vec::new(),
             group: 0,
             pipelines: Pipelines::default(),
@@ -99,6 +104,7 @@ impl Resources {
             clock: None,
             lamp_fields: LampFields::default(),
             targets: Vec::new(),
+            host: None,
         })
     }
 
@@ -130,21 +136,31 @@ impl Resources {
         self.images.get(name)
     }
 
-    /// Fills the storage buffer of a name; what it holds already is not copied again.
+    /// Has the next recording fill the storage buffer of a name; what it holds already is not copied again.
     pub fn fill_buffer<T: bytemuck::NoUninit>(&mut self, name: &'static str, content: &[T]) -> Result<(), GpuError> {
         let bytes: &[u8] = bytemuck::cast_slice(content);
         if self.filled.get(name).is_some_and(|held| held == bytes) {
             return Ok(());
         }
-        self.filled.remove(name);
-        match self.buffers.get(name).filter(|buffer| buffer.bytes() == bytes.len() as u64) {
-            Some(buffer) => self.gpu.write_buffer(buffer, bytes)?,
-            None => {
-                self.buffers.insert(name, self.gpu.storage_buffer_of(name, bytes)?);
-            }
-        }
+        let buffer = self.buffer(name, bytes.len() as u64)?;
         self.filled.insert(name, bytes.to_vec());
+        self.uploads.push((buffer, bytes.to_vec()));
         Ok(())
+    }
+
+    /// Copies into buffers what they are to be filled with. It is remembered until the recording has ended well.
+    pub fn record_uploads(&self, commands: &mut Commands) -> Result<(), GpuError> {
+        self.uploads.iter().try_for_each(|(buffer, content)| commands.upload(buffer, content))
+    }
+
+    /// The uploads are on the device, or will be before what comes next.
+    pub fn finish_uploads(&mut self) {
+        self.uploads.clear();
+    }
+
+    /// Fills buffers at once. Nothing may be being recorded.
+    pub fn upload_now(&mut self) -> Result<(), GpuError> {
+        self.uploads.drain(..).try_for_each(|(buffer, content)| self.gpu.write_buffer(&buffer, &content))
     }
 
     /// The storage buffer of a name, made anew unless it has this size already.
@@ -172,6 +188,15 @@ impl Resources {
         if self.targets.iter().all(|(target, ..)| *target != name) {
             self.images.remove(name);
         }
+    }
+
+    /// Forgets all images and buffers: their contents are not what was thought.
+    pub fn forget(&mut self) {
+        self.images.clear();
+        self.buffers.clear();
+        self.filled.clear();
+        self.uploads.clear();
+        self.parked.clear();
     }
 
     /// Brings the images and buffers of a group of wavelengths to the front; those of `shared` names come along.

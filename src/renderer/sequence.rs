@@ -61,7 +61,7 @@ impl Renderer {
     }
 
     /// Renders a frame that may look at the one before. One that fails leaves nothing to look at.
-    fn next_frame<T>(
+    pub(super) fn next_frame<T>(
         &mut self,
         scene: &Scene,
         settings: Settings,

@@ -45,6 +45,7 @@ impl<'a> Volumes<'a> {
     /// Fills the parameters and makes what the passes write to. Nothing may be being recorded.
     pub fn prepare(problem: &'a Problem, resources: &mut Resources) -> Result<Self, RenderError> {
         resources.fill_buffer("ordinates", &problem.block())?;
+        resources.upload_now()?;
         Self::allocate(problem, problem.definitions(), resources)
     }
 
