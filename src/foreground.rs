@@ -39,7 +39,9 @@ pub enum ForegroundError {
         row: usize,
     },
     /// No projection makes such depths.
-    #[error("a projection between planes at {near_m} and {far_m} m; the near one must be above 0, the far one beyond it")]
+    #[error(
+        "a projection between planes at {near_m} and {far_m} m; the near one must be above 0, the far one beyond it"
+    )]
     Projection {
         /// Of the near plane, m.
         near_m: f64,

@@ -21,8 +21,8 @@ use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Sequence, 
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Camera, Light, Scene};
 
-pub use embedded::HostedFrame;
 pub use crate::passes::{DepthBuffer, HostDepth, HostFrame, HostLeft};
+pub use embedded::HostedFrame;
 pub use prices::{Price, prices};
 use sequence::Before;
 pub use targets::Targets;

@@ -11,7 +11,9 @@ use std::time::Duration;
 use ash::vk;
 use engine::{Engine, WALLS};
 use welkin::foreground::{Depth, Foreground};
-use welkin::gpu::{DeviceRequest, Gpu, GpuError, GpuImage, HostUse, ImageFormat, ImageShape, NextUse, Pace, ScreenEncoding};
+use welkin::gpu::{
+    DeviceRequest, Gpu, GpuError, GpuImage, HostUse, ImageFormat, ImageShape, NextUse, Pace, ScreenEncoding,
+};
 use welkin::output::{display, screen};
 use welkin::passes::RenderError;
 use welkin::plan::{Decision, Outputs, Quality, Settings};
@@ -188,8 +190,7 @@ fn walls(scene: &Scene, engine: &Engine, units_per_radiance: f32) -> Foreground 
 }
 
 /// The same frame without an engine, in its unit.
-fn headless(scene: &Scene, engine: &Engine, units_per_radiance: f32) -> Vec<[f32; 3]> {
-    let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap();
+fn headless(renderer: &mut Renderer, scene: &Scene, engine: &Engine, units_per_radiance: f32) -> Vec<[f32; 3]> {
     let foreground = walls(scene, engine, units_per_radiance);
     let rendered = renderer.render_over(scene, settings(), Outputs::default(), &foreground).unwrap();
     rendered.frame.radiance.iter().map(|rgb| rgb.map(|value| value * units_per_radiance)).collect()
@@ -207,22 +208,27 @@ fn largest_difference(found: &[[f32; 4]], expected: &[[f32; 3]]) -> f32 {
 fn an_engine_gets_in_its_own_images_what_is_rendered_headless() {
     let _alone = common::alone();
     let clouds = "[[clouds]]\nkind = \"stratocumulus\"\n";
-    let scenes = [scene(20.0, ""), scene(4.0, ""), scene(4.0, clouds), scene(20.0, "")];
-    // Half floats round by up to 2^-11; distances are found in f32 from reversed depth.
+    let scenes = [scene(20.0, ""), scene(4.0, clouds), scene(20.0, "")];
+    let mut without = Renderer::new(&DeviceRequest::default()).unwrap();
+    // Distances are found in f32 from reversed depth. Devices may cut off what half floats cannot hold, 2^-10 of it: of
+    // the walls' light when they are drawn, and of the picture.
     for (format, units_per_radiance, bound) in
-        [(vk::Format::R32G32B32A32_SFLOAT, 1.0, 1e-4), (vk::Format::R16G16B16A16_SFLOAT, 4.0, 6e-4)]
+        [(vk::Format::R32G32B32A32_SFLOAT, 1.0, 1e-4), (vk::Format::R16G16B16A16_SFLOAT, 4.0, 2.1e-3)]
     {
         let engine = Engine::new(SIZE, format, true).unwrap();
-        let pictures = frames::render(&engine, &scenes, settings(), f64::from(units_per_radiance)).unwrap();
-        let expected = scenes.each_ref().map(|scene| headless(scene, &engine, units_per_radiance));
+        // Three frames, two of them in flight; one where only the format is another.
+        let scenes = if units_per_radiance == 1.0 { &scenes[..] } else { &scenes[..1] };
+        let pictures = frames::render(&engine, scenes, settings(), f64::from(units_per_radiance)).unwrap();
+        let mut headless = |scene: &Scene| headless(&mut without, scene, &engine, units_per_radiance);
+        let expected: Vec<_> = scenes.iter().map(&mut headless).collect();
         for (index, (picture, expected)) in pictures.iter().zip(&expected).enumerate() {
             let difference = largest_difference(picture, expected);
             println!("{format:?} frame {index}: {difference:.1e}");
             assert!(difference < bound, "{format:?} frame {index}: {difference}");
         }
         // Negative controls: another sun, and the frame without the engine's walls.
-        assert!(largest_difference(&pictures[0], &expected[1]) > 0.1);
-        let bare = Renderer::new(&DeviceRequest::default()).unwrap().render(&scenes[0], settings(), Outputs::default());
+        assert!(largest_difference(&pictures[0], &headless(&scene(4.0, ""))) > 0.1);
+        let bare = without.render(&scenes[0], settings(), Outputs::default());
         let bare: Vec<_> = bare.unwrap().frame.radiance.iter().map(|rgb| rgb.map(|l| l * units_per_radiance)).collect();
         assert!(largest_difference(&pictures[0], &bare) > 0.1);
         // The layer also hears of what is left when the engine closes its device.
@@ -251,7 +257,7 @@ fn a_frame_that_is_given_up_leaves_nothing_for_the_next() {
     let recorded = record(&mut renderer, 1, &scene(20.0, ""));
     engine.submit(&engine.slots[1]).unwrap();
     let picture = engine.picture(&engine.slots[1]).unwrap();
-    let expected = headless(&scene(20.0, ""), &engine, 1.0);
+    let expected = headless(&mut Renderer::new(&DeviceRequest::default()).unwrap(), &scene(20.0, ""), &engine, 1.0);
     assert!(largest_difference(&picture, &expected) < 1e-4);
     // Nothing is read back here: the queue is the engine's.
     let image = gpu.image("own", ImageShape::D2(8, 8), ImageFormat::R32Float).unwrap();
@@ -267,9 +273,9 @@ fn an_engine_that_lies_about_its_images_is_told_by_the_validation_layer() {
     let engine = Engine::new(SIZE, vk::Format::R32G32B32A32_SFLOAT, true).unwrap();
     let gpu = frames::open(&engine).unwrap();
     let mut frame = frames::frame(&engine, &gpu, 1.0).unwrap();
-    // It has just drawn its walls, and does not say so.
-    frame.colour.before.stage = vk::PipelineStageFlags2::NONE;
-    frame.colour.before.access = vk::AccessFlags2::NONE;
+    // It copies its picture, and does not say so.
+    let layout = engine::COPIED_COLOUR.layout;
+    frame.colour.after = Some(HostUse { layout, ..HostUse::default() });
     let mut renderer = Renderer::on(gpu.clone()).unwrap();
     let (slot, mut left) = (&engine.slots[0], [HostUse::default(); 2]);
     let scene = scene(20.0, "");
@@ -294,11 +300,12 @@ fn a_host_that_lacks_something_is_told_what() {
         assert!(text.contains(lacks), "{text}");
     }
     assert!(!text.contains("robustBufferAccess"), "it has that: {text}");
-    engine.features = welkin::gpu::HostFeatures { synchronization2: true, robust_image_access: true, ..engine.features };
+    engine.features =
+        welkin::gpu::HostFeatures { synchronization2: true, robust_image_access: true, ..engine.features };
     engine.queue_family = 0;
     let gpu = frames::open(&engine).unwrap();
     let mut frame = frames::frame(&engine, &gpu, 1.0).unwrap();
-    let mut refused = |frame: &welkin::renderer::HostFrame| {
+    let refused = |frame: &welkin::renderer::HostFrame| {
         let mut renderer = Renderer::on(gpu.clone()).unwrap();
         let (slot, mut left) = (&engine.slots[0], [HostUse::default(); 2]);
         let recorded = frames::record(&engine, slot, &mut renderer, &scene(20.0, ""), settings(), frame, &mut left);

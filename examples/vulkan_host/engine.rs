@@ -210,9 +210,11 @@ impl Engine {
     pub fn submit(&self, slot: &Slot) -> anyhow::Result<()> {
         let [width, height] = self.size;
         let layers = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);
-        let region = vk::BufferImageCopy::default()
-            .image_subresource(layers)
-            .image_extent(vk::Extent3D { width, height, depth: 1 });
+        let region = vk::BufferImageCopy::default().image_subresource(layers).image_extent(vk::Extent3D {
+            width,
+            height,
+            depth: 1,
+        });
         let to_host = [vk::MemoryBarrier2::default()
             .src_stage_mask(Stage::COPY)
             .src_access_mask(Access::TRANSFER_WRITE)

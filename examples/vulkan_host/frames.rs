@@ -29,7 +29,10 @@ pub fn frame(engine: &Engine, gpu: &Gpu, units_per_radiance: f64) -> anyhow::Res
     let Engine { colour, depth, size, .. } = engine;
     // SAFETY: the images are the engine's, which destroys them when all frames are done and welkin is gone.
     let (colour, depth) = unsafe {
-        (gpu.host_image("colour", colour.raw, colour.format, *size)?, gpu.host_image("depth", depth.raw, depth.format, *size)?)
+        (
+            gpu.host_image("colour", colour.raw, colour.format, *size)?,
+            gpu.host_image("depth", depth.raw, depth.format, *size)?,
+        )
     };
     Ok(HostFrame {
         colour: HostImage { image: colour, before: DRAWN_COLOUR, after: Some(COPIED_COLOUR) },

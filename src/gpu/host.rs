@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::Gpu;
 use super::barrier::Use;
 use super::buffer::GpuBuffer;
 use super::command_list::CommandList;
@@ -20,7 +21,6 @@ use super::format::ImageFormat;
 use super::image::{GpuImage, ImageInner, ImageShape};
 use super::instance::Instance;
 use super::recorder::{Commands, Kept};
-use super::Gpu;
 
 /// Extensions that a host's device must have: none. Of the instance neither.
 pub const HOST_EXTENSIONS: [&CStr; 0] = [];

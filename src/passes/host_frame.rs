@@ -114,7 +114,11 @@ impl HostFrame {
         fits("the host's colour", &self.colour, &[ImageFormat::Rgba16Float, ImageFormat::Rgba32Float])?;
         if !(self.units_per_radiance > 0.0 && self.units_per_radiance.is_finite()) {
             let found = format!("unit of {} for each radiance", self.units_per_radiance);
-            return Err(RenderError::Target { what: "the host's colour", found, expected: "number above 0".to_owned() });
+            return Err(RenderError::Target {
+                what: "the host's colour",
+                found,
+                expected: "number above 0".to_owned(),
+            });
         }
         let Some(depth) = &self.depth else { return Ok(()) };
         depth.buffer.check()?;
@@ -145,8 +149,7 @@ mod tests {
         for far_m in [5e4, f64::INFINITY] {
             for reversed in [false, true] {
                 let near_m = 0.5;
-                let [numerator_m, offset, slope] =
-                    DepthBuffer::Perspective { near_m, far_m, reversed }.to_planar();
+                let [numerator_m, offset, slope] = DepthBuffer::Perspective { near_m, far_m, reversed }.to_planar();
                 for planar_m in [0.5, 3.0, 400.0, 4e4] {
                     // The projection of Vulkan and Direct3D: depth 0 at the near plane, 1 at the far.
                     let from_near: f64 = match far_m.is_finite() {

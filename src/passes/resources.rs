@@ -8,8 +8,8 @@ use super::blocks::LampFields;
 use super::pipelines::Pipelines;
 use super::{HostRecording, RenderError, ShaderSources};
 use crate::gpu::{
-    AddressMode, Clock, Commands, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape, NextUse, Pace,
-    Pipeline, Sampler, ScreenEncoding,
+    AddressMode, Clock, Commands, Filter, Filtering, Gpu, GpuBuffer, GpuError, GpuImage, ImageFormat, ImageShape,
+    NextUse, Pace, Pipeline, Sampler, ScreenEncoding,
 };
 use crate::plan::TableFormat;
 

@@ -41,8 +41,7 @@ impl Renderer {
         frame.check(&scene.camera)?;
         self.foregrounds += 1;
         let surface = frame.depth.as_ref().map(|_| Surface::Given(self.foregrounds));
-        self.resources.host =
-            Some(HostRecording { commands: Some(commands), frame: frame.clone(), recorded: None });
+        self.resources.host = Some(HostRecording { commands: Some(commands), frame: frame.clone(), recorded: None });
         let plan = self.next_frame(scene, settings, |renderer| renderer.record_passes(scene, settings, surface));
         let host = self.resources.host.take();
         let plan = plan?;
