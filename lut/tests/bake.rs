@@ -126,12 +126,12 @@ fn length_within_m(radius_m: f64, [bottom_m, top_m]: [f64; 2], altitude_m: f64, 
 }
 
 #[test]
-fn a_table_would_blur_a_layer_with_sharp_bounds_fifty_times_as_much_as_air_without() {
+fn a_table_would_blur_a_layer_with_sharp_bounds_and_does_not_blur_haze() {
     let (radius_m, top_m) = (6_360_000.0, 100_000.0);
     let mapping = OpticalDepthMapping { radius_m, top_m };
     let size = BakeSettings::MEDIUM.optical_depth_size;
-    // The 99th percentile of errors of transmittance between the texels of a table of exact values.
-    let p99 = |optical_depth: &dyn Fn(f64, f64) -> f64| {
+    // Errors of transmittance between the texels of a table of exact values: 99th percentile and maximum.
+    let errors = |optical_depth: &dyn Fn(f64, f64) -> f64| {
         let texel = |x: u32, y: u32| {
             let [altitude_m, mu] = mapping.parameters(unit_from_texel([x, y], size));
             [optical_depth(altitude_m, mu); 3]
@@ -147,7 +147,7 @@ fn a_table_would_blur_a_layer_with_sharp_bounds_fifty_times_as_much_as_air_witho
             })
             .collect();
         errors.sort_by(f64::total_cmp);
-        errors[errors.len() * 99 / 100]
+        [errors[errors.len() * 99 / 100], errors[errors.len() - 1]]
     };
     // Smoke of optical depth 0.33 from 1.5 to 3 km; and as much of it in shells as thin as air thins out.
     let layer = |altitude_m: f64, mu: f64| 2.2e-4 * length_within_m(radius_m, [1500.0, 3000.0], altitude_m, mu);
@@ -159,8 +159,9 @@ fn a_table_would_blur_a_layer_with_sharp_bounds_fifty_times_as_much_as_air_witho
         };
         shells.map(of_shell).sum::<f64>()
     };
-    let [sharp, smooth] = [p99(&layer), p99(&haze)];
-    println!("transmittance between texels, 99 %: {sharp:.4} with a layer, {smooth:.5} with haze");
-    assert!(sharp > 0.02, "{sharp}");
-    assert!(sharp > 10.0 * smooth, "{sharp} {smooth}");
+    let (sharp, smooth) = (errors(&layer), errors(&haze));
+    println!("transmittance between texels, 99 % and worst: {sharp:.4?} with a layer, {smooth:.4?} with haze");
+    // A sample falls on every bound sooner or later: there all the smoke of a grazing ray is missed.
+    assert!(sharp[1] > 0.5 && sharp[0] > 10.0 * smooth[0], "{sharp:?} {smooth:?}");
+    assert!(smooth[1] < 2e-3, "{smooth:?}");
 }
