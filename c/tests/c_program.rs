@@ -55,7 +55,8 @@ fn the_c_program_bakes_verifies_reads_and_samples_a_pack() {
     };
     // The static library first: it needs the system's libraries alone.
     fs::copy(library(".a"), &archive).unwrap();
-    compile(&[&archive, Path::new("-lpthread"), Path::new("-ldl")]);
+    // Its metrics of pictures are in C++.
+    compile(&[&archive, Path::new("-lpthread"), Path::new("-ldl"), Path::new("-lstdc++")]);
     let said = run();
     // The library's answers are those of the crate, and the file's those of the table.
     let tables = Pack::read(&pack).unwrap().tables(Precision::F16, None).unwrap();

@@ -7,7 +7,7 @@ use welkin::frame::Frame;
 use welkin::gpu::DeviceRequest;
 use welkin::plan::{Outputs, Quality, Settings, bake_settings};
 use welkin::renderer::Renderer;
-use welkin::report::metrics::compare;
+use welkin::report::compare;
 use welkin::scene::Scene;
 use welkin_lut::pack::{FileFormat, PackOptions, Precision, write_pack};
 use welkin_wgpu_sky::{Camera, draw};
