@@ -32,7 +32,7 @@ pub struct HostColourBlock {
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let Some(frame) = recording.resources.host_frame().cloned() else { return Ok(()) };
     let Some(radiance) = recording.resources.existing_image("radiance_image").cloned() else { return Ok(()) };
-    let from_radiance = padded_columns(frame.from_radiance(recording.facts.scene));
+    let from_radiance = padded_columns(frame.colour_matrix(recording.facts.scene));
     recording.insert_parameters("host_colour", &HostColourBlock { from_radiance });
     let target = &frame.colour.image;
     let flags: &[&str] = if target.format() == ImageFormat::Rgba16Float { &["HALF"] } else { &[] };

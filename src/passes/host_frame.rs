@@ -93,7 +93,7 @@ impl HostFrame {
     }
 
     /// From spectral radiance to the host's colour.
-    pub(super) fn from_radiance(&self, scene: &Scene) -> DMat3 {
+    pub(super) fn colour_matrix(&self, scene: &Scene) -> DMat3 {
         scene.colour()[0].radiance * self.units_per_radiance
     }
 

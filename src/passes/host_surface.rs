@@ -46,7 +46,7 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let Some(depth) = frame.depth.as_ref() else { return Ok(()) };
     recording.resources.image("foreground_image", shape, ImageFormat::Rgba32Float)?;
     let [numerator_m, offset, slope] = depth.buffer.to_planar().map(|value| value as f32);
-    let to_radiance = padded_columns(frame.from_radiance(recording.facts.scene).inverse());
+    let to_radiance = padded_columns(frame.colour_matrix(recording.facts.scene).inverse());
     recording
         .insert_parameters("host_surface", &HostSurfaceBlock { to_radiance, numerator_m, offset, slope, padding: 0.0 });
     let flags: &[&str] = match depth.buffer {
