@@ -165,6 +165,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let slight = is_slight(middle_view, cell, bend) && transmittance_is_straight(cell, corners);
         if mixes || !slight {
             list(cell);
+#ifdef WHOLE_CELLS
+            // `compose` writes all of its pixels.
+            return;
+#endif
         }
     }
     // The tests of loops stand at their end: see `compose`.

@@ -28,8 +28,9 @@
 
 // Below this, light is dark; it keeps logarithms finite.
 const DARK: f32 = 1e-30;
-// Texels of a workgroup, side by side.
-const TEXEL_COUNT: u32 = 4u;
+// Texels of a workgroup, side by side: neighbours whose rays of one cosine have the same legs, so that invocations in lockstep
+// walk the same nodes.
+const TEXEL_COUNT: u32 = 8u;
 // Y_00, whose coefficient times it is a mean over directions.
 const Y_CONSTANT: f32 = 0.282094792;
 
@@ -98,18 +99,18 @@ fn ring_along(altitude_m: f32, mu_s: f32, direction: Direction) -> Ring {
 
 var<workgroup> rings: array<array<Ring, COSINE_COUNT>, TEXEL_COUNT>;
 
-// x: a cosine, y: a texel.
-@compute @workgroup_size(#{COSINE_COUNT}, TEXEL_COUNT)
+// x, z: a texel, y: a cosine.
+@compute @workgroup_size(TEXEL_COUNT, #{COSINE_COUNT})
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     let size = textureDimensions(isotropic_series);
     // The last workgroup may reach beyond the table: its invocations must meet the barrier too.
-    let texel = vec2<u32>(id.y, id.z);
+    let texel = id.xz;
     let unit = mapping::unit_from_texel(texel, vec2<f32>(size));
     let here = mapping::multiple_scattering_from_unit(unit, atmosphere.top_m, atmosphere.sun_warp);
     let mu_h = horizon_mu(atmosphere.radius_m, here.altitude_m);
-    rings[local.y][local.x] = ring_along(here.altitude_m, here.mu, direction_of(local.x * AZIMUTH_COUNT, mu_h));
+    rings[local.x][local.y] = ring_along(here.altitude_m, here.mu, direction_of(local.y * AZIMUTH_COUNT, mu_h));
     workgroupBarrier();
-    if local.x > 0u || texel.x >= size.x {
+    if local.y > 0u || texel.x >= size.x {
         return;
     }
     // Sums over all directions, and of what comes down through a horizontal plane.
@@ -118,7 +119,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
     for (var j = 0u; j < COSINE_COUNT; j++) {
         let direction = direction_of(j * AZIMUTH_COUNT, mu_h);
         let solid_angle_sr = direction.solid_angle_sr * f32(AZIMUTH_COUNT);
-        let ring = rings[local.y][j];
+        let ring = rings[local.x][j];
         all.radiance += solid_angle_sr * ring.radiance;
         all.transfer += solid_angle_sr * ring.transfer;
         downward.radiance += solid_angle_sr * max(direction.mu, 0.0) * ring.radiance;

@@ -2,8 +2,11 @@
 
 #import welkin::camera::{pixel_angle_rad, view_through}
 #import welkin::lattice::{
-    CELL, DIFFUSE_LAYER, GROUND_CELL, MIXED_CELL, NODE_LAYERS, SINGLE_LAYER, SKY_CELL, TRANSMITTANCE_LAYER
+    CELL, DIFFUSE_LAYER, GROUND_CELL, MIXED_CELL, NODE_LAYERS, SINGLE_LAYER, SKY_CELL
 }
+#ifdef LATTICE_TRANSMITTANCE
+#import welkin::lattice::TRANSMITTANCE_LAYER
+#endif
 #ifdef OVERLAY
 #import welkin::lattice::{GLOW_LAYER, GROUND_DIFFUSE_LAYER, GROUND_STRAIGHT_LAYER}
 #endif
@@ -59,14 +62,17 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         kind = kind_of_cell(place, view, zenith_rad);
     }
     let first = NODE_LAYERS * id.z;
-    textureStore(sky_lattice_image, id.xy, first + TRANSMITTANCE_LAYER, vec4<f32>(sky.transmittance, kind));
+    var diffuse = sky.diffuse;
 #ifdef OVERLAY
-    put(id.xy, first + DIFFUSE_LAYER, sky.diffuse);
     put(id.xy, first + GROUND_STRAIGHT_LAYER, sky.ground_straight);
     put(id.xy, first + GROUND_DIFFUSE_LAYER, sky.ground_diffuse);
     put(id.xy, first + GLOW_LAYER, sky.glow);
 #else
-    put(id.xy, first + DIFFUSE_LAYER, sky.diffuse + sky.ground_straight + sky.ground_diffuse + sky.glow);
+    diffuse += sky.ground_straight + sky.ground_diffuse + sky.glow;
+#endif
+    textureStore(sky_lattice_image, id.xy, first + DIFFUSE_LAYER, vec4<f32>(diffuse, kind));
+#ifdef LATTICE_TRANSMITTANCE
+    put(id.xy, first + TRANSMITTANCE_LAYER, sky.transmittance);
 #endif
     for (var i = 0u; i < SINGLE_COUNT; i++) {
         put(id.xy, first + SINGLE_LAYER + i, sky.single[i]);

@@ -25,5 +25,5 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let table = recording.resources.image("multiple_scattering_table", shape, table_format(recording.facts))?;
     let [width, height, _] = shape.extent();
     let cosines = recording.facts.settings.directions.cosines();
-    recording.dispatch(NAME, &[], &[("isotropic_series", &table)], Work::Invocations([cosines, width, height]))
+    recording.dispatch(NAME, &[], &[("isotropic_series", &table)], Work::Invocations([width, cosines, height]))
 }

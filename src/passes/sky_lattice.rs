@@ -22,7 +22,8 @@ pub const PASS: Pass = Pass {
         inputs: |facts| {
             let scene = facts.scene;
             let lights = (&facts.lights, &facts.faint_discs);
-            Fingerprint::of(&(&scene.camera, lights, &scene.planet, facts.has_overlay()))
+            let transmittance = (facts.has_overlay(), facts.outputs.capture);
+            Fingerprint::of(&(&scene.camera, lights, &scene.planet, transmittance))
         },
         bytes: |facts| shape(facts, lattice_cell(facts).unwrap_or(1)).texels() * ImageFormat::Rgba32Float.texel_bytes(),
     },
@@ -32,7 +33,7 @@ pub const PASS: Pass = Pass {
 /// Layers for what a node holds, of corners and of centres: `NODE_LAYERS` in `lattice.wgsl`.
 fn shape(facts: &Facts, cell: u32) -> ImageShape {
     let camera = &facts.scene.camera;
-    let smooth = if facts.has_overlay() { 5 } else { 2 };
+    let smooth = if facts.has_overlay() { 5 } else { 1 + u32::from(facts.outputs.capture) };
     let single = if facts.is_lit() { facts.light_slots() * facts.groups.scatterer_count } else { 0 };
     // Corners are one more than cells.
     let nodes = |pixels: u32| pixels.div_ceil(cell) + 1;
