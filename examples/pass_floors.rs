@@ -186,7 +186,7 @@ fn counts(settings: &Settings, air: &Air) -> Vec<Count> {
             units: 2.0 * cells,
             reads: 1.0 + layers,
             transcendentals: 3.0 + 3.0 * layers + 3.0,
-            writes: 1.0 + layers,
+            writes: layers,
         },
         Count {
             pass: "interpolate",
