@@ -1,7 +1,10 @@
 //! Fog, local volumes and local lights in real time: against pictures of the path tracer, and their time; prints Markdown.
 //!
-//! For each `scenes/fog/NAME.toml` of which there is a `DIR/NAME.exr`, made by `welkin reference` from that scene at any size:
-//! `cargo run --release --example compare_fog -- compare DIR [--quality NAME]... [--scene NAME]...`
+//! For each `scenes/fog/NAME.toml`, or of another folder, of which there is a `DIR/NAME.exr`, made by `welkin reference` from that
+//! scene at any size:
+//! `cargo run --release --example compare_fog -- compare DIR [--scenes FOLDER] [--quality NAME]... [--scene NAME]...`
+//!
+//! The street lamp with light scattered once, and with all: `cargo run --release --example compare_fog -- lamp docs/images/street-lamp.png`
 //!
 //! Time against the number of lights and volumes, once all in view and once all behind the camera, as a table and a plot:
 //! `cargo run --release --example compare_fog -- scaling docs/images/fog-scaling.svg`
@@ -15,7 +18,7 @@ use clap::{Parser, Subcommand};
 use plotters::prelude::*;
 use welkin::gpu::DeviceRequest;
 use welkin::output::{AtomicFile, read_exr, write_exr, write_png};
-use welkin::plan::{Outputs, Quality, Settings};
+use welkin::plan::{CloudScattering, Outputs, Quality, Settings};
 use welkin::renderer::{Rendered, Renderer};
 use welkin::report::compare;
 use welkin::scene::Scene;
@@ -27,6 +30,9 @@ struct Arguments {
     /// Qualities to render at.
     #[arg(long = "quality", default_value = "medium", global = true)]
     qualities: Vec<Quality>,
+    /// Folder of the scenes.
+    #[arg(long = "scenes", global = true, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/fog"))]
+    folder: PathBuf,
     /// Scenes to render; all of them without.
     #[arg(long = "scene", global = true)]
     scenes: Vec<String>,
@@ -45,6 +51,11 @@ enum Task {
         #[arg(long)]
         pictures: Option<PathBuf>,
     },
+    /// The street lamp in fog: light that was scattered once, and below it all light.
+    Lamp {
+        /// The picture to write.
+        picture: PathBuf,
+    },
     /// Time against the number of lights and volumes.
     Scaling {
         /// The plot to write.
@@ -59,8 +70,7 @@ fn of_media(rendered: &Rendered) -> f64 {
 }
 
 fn fog_scenes(arguments: &Arguments) -> Vec<(String, Scene)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/fog");
-    let mut paths: Vec<PathBuf> = folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut paths: Vec<PathBuf> = arguments.folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     let named = |path: PathBuf| {
         let name = path.file_stem()?.to_str()?.to_owned();
@@ -71,8 +81,11 @@ fn fog_scenes(arguments: &Arguments) -> Vec<(String, Scene)> {
 }
 
 fn compare_all(renderer: &mut Renderer, arguments: &Arguments, directory: &Path, pictures: Option<&Path>) {
-    println!("| scene | quality | RMS of ln (noise of the truth) | energy | FLIP | fog, volumes and lights, ms |");
-    println!("|---|---|---|---|---|---|");
+    println!(
+        "| scene | quality | RMS of ln (noise of the truth) | energy | energy without the brightest hundredth of pixels | \
+         median of pixels | FLIP | fog, volumes and lights, ms |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
     for (name, mut scene) in fog_scenes(arguments) {
         let picture = directory.join(format!("{name}.exr"));
         let truth = picture.exists().then(|| read_exr(&picture).unwrap_or_else(|error| panic!("{error}")));
@@ -90,8 +103,9 @@ fn compare_all(renderer: &mut Renderer, arguments: &Arguments, directory: &Path,
                 Some(truth) => {
                     let comparison = compare(&rendered.frame, truth).unwrap_or_else(|error| panic!("{error}"));
                     let noise = relative_noise(truth);
+                    let [rest, median] = ratios(&rendered.frame.radiance, &truth.radiance);
                     println!(
-                        "| {name} | {quality} | {:.3} ({noise:.3}) | {:.3} | {:.3} | {:.0} |",
+                        "| {name} | {quality} | {:.3} ({noise:.3}) | {:.3} | {rest:.3} | {median:.3} | {:.3} | {:.0} |",
                         (comparison.rms_ln_ratio.powi(2) - noise * noise).max(0.0).sqrt(),
                         comparison.energy_ratio,
                         comparison.mean_flip,
@@ -114,6 +128,34 @@ fn compare_all(renderer: &mut Renderer, arguments: &Arguments, directory: &Path,
             }
         }
     }
+}
+
+/// The street lamp's picture twice, one below the other.
+fn lamp(renderer: &mut Renderer, quality: Quality, path: &Path) {
+    let scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/fog/street-lamp.toml")).unwrap();
+    let all = Settings::of(quality);
+    let mut single = all;
+    single.clouds.scattering = CloudScattering::Single;
+    let mut pixels = Vec::new();
+    for settings in [single, all] {
+        let rendered = renderer.render(&scene, settings, Outputs { capture: false, picture: true });
+        pixels.extend(rendered.unwrap_or_else(|error| panic!("{error}")).picture.unwrap_or_default());
+    }
+    let file = AtomicFile::create(path).unwrap_or_else(|error| panic!("{error}"));
+    write_png(file, scene.camera.width, 2 * scene.camera.height, &pixels).unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// Light over that of the truth: of all but the brightest hundredth of the pixels, as a lamp's own pixel may hold half of a picture's light and
+/// its middle is not its mean; and the median of pixels.
+fn ratios(found: &[[f32; 3]], truth: &[[f32; 3]]) -> [f64; 2] {
+    let sum = |pixel: &[f32; 3]| pixel.iter().map(|&value| f64::from(value)).sum::<f64>();
+    let mut pairs: Vec<_> = found.iter().zip(truth).map(|(found, truth)| [sum(found), sum(truth)]).collect();
+    pairs.sort_by(|a, b| a[0].max(a[1]).total_cmp(&b[0].max(b[1])));
+    let rest = &pairs[..pairs.len() - pairs.len() / 100];
+    let total = |which: usize| rest.iter().map(|pair| pair[which]).sum::<f64>();
+    let mut shares: Vec<_> = pairs.iter().map(|[found, truth]| found / truth).collect();
+    shares.sort_by(f64::total_cmp);
+    [total(0) / total(1), shares[shares.len() / 2]]
 }
 
 /// Root mean square over pixels and bands of the truth's standard error over its radiance.
@@ -233,6 +275,7 @@ fn main() {
         Task::Compare { directory, pictures } => {
             compare_all(&mut renderer, &arguments, directory, pictures.as_deref());
         }
+        Task::Lamp { picture } => lamp(&mut renderer, arguments.qualities[0], picture),
         Task::Scaling { plot } => scaling(&mut renderer, arguments.qualities[0], plot),
     }
 }

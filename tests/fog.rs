@@ -7,11 +7,11 @@ use std::path::Path;
 use glam::DVec3;
 use welkin::frame::Frame;
 use welkin::gpu::{DeviceRequest, Validation};
-use welkin::plan::{CloudScattering, Decision, Outputs, Plan, Quality, Settings};
+use welkin::plan::{CloudScattering, Decision, Outputs, Plan, Quality, Settings, Skipping};
 use welkin::reference::single::first_order;
 use welkin::reference::{World, transport};
 use welkin::renderer::{Rendered, Renderer};
-use welkin::scene::Scene;
+use welkin::scene::{Light, Scene};
 
 const CAPTURE: Outputs = Outputs { capture: true, picture: false };
 /// One in so many pixels is compared where lamps are many.
@@ -192,4 +192,62 @@ fn light_of_a_lamp_that_fog_scatters_once_is_what_quadrature_finds() {
     assert!(rms < 0.02, "{rms}");
     // Negative control: a lamp a twentieth brighter is told from it.
     assert!(difference(frame, &exact(&lamp(3.15))) > 0.04);
+}
+
+#[test]
+fn volumes_out_of_the_picture_keep_no_light_and_do_not_show() {
+    let ball = |name: &str, north_m: f64| {
+        format!(
+            "[[volumes]]\nname = \"{name}\"\nshape = \"ellipsoid\"\ncentre_m = [0, {north_m}, 8]\nsize_m = [9, 9, 9]\n\
+             scattering_per_m = 0.2\nphase = \"isotropic\"\n"
+        )
+    };
+    let mut scene = dark(&format!("{}{}{}", ball("ahead", 40.0), ball("behind", -40.0), ball("farther behind", -80.0)));
+    let Light::Directional(sun) = &mut scene.lights[0] else { panic!("the sun is directional") };
+    sun.irradiance = [1.5; 3];
+    let with = |skipping| (scene.clone(), Settings { skipping, ..low() });
+    let wrong = Skipping { out_of_view_share: -1.0, ..Skipping::USUAL };
+    // The wrong one first: in memory that held the right light before it might be found again.
+    let frames = render(&[with(wrong), with(Skipping::USUAL), with(Skipping::NONE)]);
+    let bytes = |rendered: &Rendered| of_media(&rendered.timings.plan)[0].1;
+    assert_eq!(3 * bytes(&frames[1]), bytes(&frames[2]));
+    assert!(frames[1].frame.radiance == frames[2].frame.radiance);
+    // Negative control: the light of what is in the picture is missed.
+    assert!(frames[0].frame.radiance != frames[2].frame.radiance);
+}
+
+/// A stroke of lightning in a sheet of cloud of some density, seen from below.
+fn stroke(density: f64, time_s: f64) -> Scene {
+    let mut scene = dark(&format!(
+        "time_s = {time_s}\n[[clouds]]\nkind = \"stratus\"\ncoverage = 1\nbase_m = 300\ntop_m = 700\n\
+         water_g_per_m3 = {}\n[[light.point]]\nname = \"stroke\"\nposition_m = [60, 500, 420]\nintensity = 1e4\n\
+         flash = {{ start_s = 2, decay_s = 0.1 }}\n",
+        0.3 * density
+    ));
+    scene.camera.direction.elevation_rad = 0.6;
+    scene
+}
+
+#[test]
+fn lightning_inside_a_cloud_is_what_quadrature_finds_and_fades() {
+    let mut single = Settings::of(Quality::High);
+    single.clouds.scattering = CloudScattering::Single;
+    let at_once = stroke(1.0, 2.0);
+    let scenes = [at_once.clone(), stroke(1.0, 2.1), stroke(1.0, 1.9), stroke(1.4, 2.0)];
+    let mut frames = render(&scenes.map(|scene| (scene, single)));
+    assert_eq!(of_media(&frames[2].timings.plan), [(Decision::Skip, 0); PASSES.len()]);
+    assert!(frames[2].frame.radiance.iter().flatten().all(|&radiance| radiance == 0.0));
+    let sum = |frame: &Frame| frame.radiance.iter().map(|radiance| f64::from(radiance[1])).sum::<f64>();
+    let faded = sum(&frames[1].frame) / sum(&frames[0].frame);
+    assert!((faded * 1.0_f64.exp() - 1.0).abs() < 1e-3, "{faded}");
+    frames.iter_mut().for_each(|it| it.frame.radiance = it.frame.radiance.iter().copied().step_by(31).collect());
+    let world = World::from_scene(&at_once);
+    let seen = |(eye, view): (DVec3, DVec3)| first_order(&world, eye, view, 2e-2).total()[1];
+    let exact: f64 = views(&at_once).into_iter().step_by(31).map(seen).sum();
+    // Clouds weaken the lamp's light by samples on the way to it.
+    let ratio = sum(&frames[0].frame) / exact;
+    assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
+    // Negative control: a denser cloud is told from it.
+    let denser = sum(&frames[3].frame) / exact;
+    assert!((denser - 1.0).abs() > 0.05, "{denser}");
 }

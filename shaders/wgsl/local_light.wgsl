@@ -1,9 +1,12 @@
 #define_import_path welkin::local_light
 // Point and spot lights, and glowing volumes as seen from outside: their falloff, and what media leave of them.
 //
-// Definitions: LOCAL_LIGHT_SAMPLES.
+// Definitions: LOCAL_LIGHT_SAMPLES; CLOUDS.
 
 #import welkin::cloud_grid::local_direction
+#ifdef CLOUDS
+#import welkin::cloud_way::cloud_depth
+#endif
 #import welkin::lamp_field::scattered_irradiance
 #import welkin::local_lists::local_lists
 #import welkin::volume_field::{fog_length_m, local_length_m, volumes, Place, FOG_COUNT}
@@ -52,7 +55,7 @@ fn scattered_cone_share(light: u32, cone: f32, depth: vec3<f32>) -> f32 {
     return mix(local_lights[light].solid_share, cone, exp(-local_lights[light].backward * mean_depth));
 }
 
-// Optical depth of fog and volumes between a place and a light.
+// Optical depth of fog, volumes and clouds between a place and a light.
 fn depth_to_local_light(light: u32, place: Place, toward: vec3<f32>, distance_m: f32) -> vec3<f32> {
     let local = local_direction(place.map, toward);
     var depth = vec3<f32>(0.0);
@@ -63,6 +66,9 @@ fn depth_to_local_light(light: u32, place: Place, toward: vec3<f32>, distance_m:
         let other = local_lists[local_lights[light].lists_first + i];
         depth += volumes[other].extinction_per_m * local_length_m(other, place.p, toward, distance_m, SAMPLES);
     }
+#ifdef CLOUDS
+    depth += vec3<f32>(cloud_depth(place.map, place.altitude_m, local, distance_m));
+#endif
     return depth;
 }
 

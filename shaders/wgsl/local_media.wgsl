@@ -19,7 +19,7 @@
     altitude_m, clear_air, growth_behind, observer_position, pass_air, place_in_step, position_m, ray_of, Air, Ray, NEVER_M,
     OPAQUE,
 }
-#import welkin::volume_field::{fog_density, place_of, volumes, Place, FOG_COUNT}
+#import welkin::volume_field::{fog_density, place_of, volumes, Place, FOG_COUNT, VOLUME_COUNT}
 #import welkin::volume_source::{from_lights, mean_through, seen, Piece, Stretch}
 #if LOCAL_LIGHT_COUNT > 0
 #import welkin::cluster_members::{lamps_of, near_lamps_of}
@@ -30,8 +30,10 @@
 #endif
 #ifdef CLOUDS
 #import welkin::cloud_daylight::{cover_at, left_on_ground, straight_left}
+#import welkin::cloud_field::CLOUD_LAYER_COUNT
+#import welkin::cloud_matter::cloud_matter
 #import welkin::cloud_source::{phases, PHASE_COUNT}
-#import welkin::cloud_step::{cloud_extinction, from_clouds, CloudStep}
+#import welkin::cloud_step::{cloud_extinction, from_clouds, is_inside, layer_extinction, CloudStep}
 #import welkin::media_march::leave_air
 #endif
 
@@ -96,6 +98,34 @@ fn from_volume(piece: Piece, stretch: Stretch, pixel: vec2<u32>, cluster: u32) -
 #endif
     return radiance + own * volumes[piece.index].scattering_per_m * arriving;
 }
+
+#ifdef CLOUDS
+#if LOCAL_LIGHT_COUNT > 0
+// What clouds send of the local lights' light in a step, before the air. To a lamp a layer is matter like that of a volume, behind all of which
+// its entry stands.
+fn clouds_lit_by_lamps(place: Place, extinction: f32, stretch: Stretch, cluster: u32) -> vec3<f32> {
+    var radiance = vec3<f32>(0.0);
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        if !is_inside(layer, place.altitude_m) {
+            continue;
+        }
+#if CLOUD_LAYER_COUNT > 1
+        let own = layer_extinction(layer, place.map, place.altitude_m);
+#else
+        let own = extinction;
+#endif
+        let piece = Piece(VOLUME_COUNT + layer, 1.0, place);
+        var lamps = lamps_of(cluster);
+        var arriving = vec3<f32>(0.0);
+        for (var light = next_member(&lamps); light != NONE; light = next_member(&lamps)) {
+            arriving += from_local_light(light, piece, stretch, ALL);
+        }
+        radiance += own * stretch.step_m * cloud_matter[layer].albedo * arriving;
+    }
+    return radiance;
+}
+#endif
+#endif
 
 // A step: the point that stands for it, and the extinction of fog and volumes there.
 struct Step {
@@ -184,15 +214,20 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let at = step.place;
         let cloudy = select(0.0, cloud_extinction(at.map, at.altitude_m), here.clouds);
         within += cloudy * step.length_m;
+#endif
+        let stretch = Stretch(ray.direction, observer_position(), t_m, step.length_m, before, within);
+#ifdef CLOUDS
         if cloudy > 0.0 {
             let up = normalize(vec3<f32>(at.p.xy, at.p.z + atmosphere.radius_m));
             let clouds = CloudStep(at.map, at.altitude_m, up, cloudy, sum.clouds, cloudy * step.length_m);
             let light = from_clouds(clouds, ray.direction, &phase);
             sum.radiance += through_air * exp(-sum.local) * mean_through(own) * light;
+#if LOCAL_LIGHT_COUNT > 0
+            sum.radiance += through_air * clouds_lit_by_lamps(at, cloudy, stretch, here.cluster);
+#endif
             sum.clouds += cloudy * step.length_m;
         }
 #endif
-        let stretch = Stretch(ray.direction, observer_position(), t_m, step.length_m, before, within);
         var media = media_of(here.cluster);
         for (var index = next_member(&media); index != NONE; index = next_member(&media)) {
             let density = fog_density(index, step.place, step.half_rise_m);

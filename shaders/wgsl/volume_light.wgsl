@@ -1,7 +1,8 @@
 // Pass: optical depth from each cell of the grids of fog and local volumes to each light, through the sum of all media, and
 // straight up and down through the fog: what a march would otherwise find again for every sample of every frame.
 //
-// Definitions: CLOUDS; SURFACE_HILLS (hills may stand before the lights); VOLUME_LIGHT_SAMPLES.
+// Definitions: CLOUDS; SURFACE_HILLS (hills may stand before the lights); VOLUME_LIGHT_SAMPLES;
+// VOLUME_BLOCKS, in use.
 
 #import welkin::atmosphere::atmosphere
 #import welkin::cloud_grid::local_direction
@@ -14,7 +15,7 @@
 #import welkin::local_lists::local_lists
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::volume_field::{
-    fog_length_m, local_length_m, place_of, volume_density, volumes, Place, FOG_COUNT, VOLUME_COUNT,
+    fog_length_m, local_length_m, place_of, volumes, Place, FOG_COUNT,
 }
 #import welkin::volume_grid::{place_in_block, CELLS, COLUMNS, FOG_LEVELS}
 
@@ -25,6 +26,8 @@
 @group(1) @binding(43) var volume_sky_image: texture_storage_3d<rgba16float, write>;
 
 const SAMPLES: u32 = #{VOLUME_LIGHT_SAMPLES}u;
+const BLOCKS: u32 = #{VOLUME_BLOCKS}u;
+const FOG_BLOCKS: u32 = FOG_COUNT * FOG_LEVELS;
 const FARTHEST_M: f32 = 60000.0;
 // Beyond the range of half floats nothing is seen.
 const DARK: f32 = 60000.0;
@@ -81,10 +84,14 @@ fn vertical(index: u32, place: Place, upward: f32) -> vec2<f32> {
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     let block = texel.y / CELLS * COLUMNS + texel.x / CELLS;
-    let is_fog = block < FOG_COUNT * FOG_LEVELS;
-    let index = select(block - FOG_COUNT * (FOG_LEVELS - 1u), block / FOG_LEVELS, is_fog);
-    if any(texel >= textureDimensions(volume_light_image)) || index >= VOLUME_COUNT {
+    if any(texel >= textureDimensions(volume_light_image)) || block >= BLOCKS {
         return;
+    }
+    let is_fog = block < FOG_BLOCKS;
+    var index = block / FOG_LEVELS;
+    if !is_fog {
+        // The first list is that of the volumes whose light is kept.
+        index = local_lists[block - FOG_BLOCKS];
     }
     let light = texel.z / CELLS;
     let share = (vec3<f32>(texel % CELLS) + 0.5) / f32(CELLS);
@@ -93,14 +100,18 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
         place = place_of(place.p);
     }
     var others = 0.0;
+    var depth = vec3<f32>(0.0);
+    // Without a light the image has one slot all the same.
+    if light < LIGHT_COUNT {
 #ifdef CLOUDS
-    others -= log(max(straight_left(light, place.map, place.altitude_m), 1e-20));
+        others -= log(max(straight_left(light, place.map, place.altitude_m), 1e-20));
 #endif
 #ifdef SURFACE_HILLS
-    let local = local_direction(place.map, observer.lights[light].direction);
-    others += behind_hills(place, local, 20.0);
+        let local = local_direction(place.map, observer.lights[light].direction);
+        others += behind_hills(place, local, 20.0);
 #endif
-    let depth = depth_to_light(index, place, light);
+        depth = depth_to_light(index, place, light);
+    }
     textureStore(volume_light_image, texel, min(vec4<f32>(depth, others), vec4<f32>(DARK)));
     if light == 0u {
         let depths = vec4<f32>(vertical(index, place, 1.0), vertical(index, place, -1.0));

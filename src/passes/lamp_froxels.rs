@@ -13,10 +13,12 @@ pub const PASS: Pass = Pass {
     declaration: Declaration {
         name: NAME,
         need,
-        reads: &["cloud_shape_volume", "cloud_erosion_volume", "cluster_masks"],
+        reads: &["cloud_shape_volume", "cloud_erosion_volume", "cloud_weather_map", "cloud_curl_map", "cluster_masks"],
         writes: &["lamp_froxels"],
         inputs: |facts| {
-            let media = (&facts.volumes, &facts.local_lights, facts.scene.time_s, facts.cloud_scattering());
+            let scene = facts.scene;
+            let clouds = (&scene.clouds, facts.cloud_scattering());
+            let media = (&facts.volumes, &facts.local_lights, scene.time_s, clouds);
             Fingerprint::of(&(&facts.scene.camera, media, facts.scene.planet.radius_m, facts.settings.volumes))
         },
         bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),

@@ -16,13 +16,17 @@ pub const PASS: Pass = Pass {
             "multiple_scattering_table",
             "cloud_light_image",
             "cloud_cover_image",
+            "cloud_shape_volume",
+            "cloud_erosion_volume",
+            "cloud_weather_map",
+            "cloud_curl_map",
             "volume_sky_image",
             "cluster_masks",
         ],
         writes: &["terrain_image"],
         inputs: |facts| {
             let scene = facts.scene;
-            let media = (&facts.volumes, &facts.local_lights);
+            let media = (&facts.volumes, &facts.local_lights, &scene.clouds, scene.time_s);
             Fingerprint::of(&(&scene.terrain, &scene.camera, &facts.lights, &scene.planet, media))
         },
         bytes: |facts| shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),

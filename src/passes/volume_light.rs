@@ -16,7 +16,7 @@ pub const PASS: Pass = Pass {
         inputs: |facts| {
             let directions: Vec<_> = facts.lights.iter().map(|light| light.direction).collect();
             let scene = facts.scene;
-            let media = (&facts.volumes, scene.time_s, facts.settings.volumes);
+            let media = (&facts.volumes, &facts.seen_volumes, scene.time_s, facts.settings.volumes);
             Fingerprint::of(&(media, directions, scene.planet.radius_m, &scene.terrain))
         },
         bytes: |facts| {
@@ -45,11 +45,15 @@ pub struct Blocks {
     pub rows: u32,
 }
 
-/// The blocks of a scene: nested ones of each bank of fog, one of each local volume.
+/// How many hold light.
+pub fn block_count(facts: &Facts) -> u32 {
+    facts.fog_count() * facts.settings.volumes.fog_levels + facts.seen_volumes.len() as u32
+}
+
+/// The blocks of a scene: nested ones of each bank of fog, one of each local volume that is seen.
 pub fn blocks(facts: &Facts) -> Blocks {
     let settings = &facts.settings.volumes;
-    let fog = facts.fog_count();
-    let count = (fog * settings.fog_levels + facts.volumes.len() as u32 - fog).max(1);
+    let count = block_count(facts).max(1);
     let mut cells = settings.cells;
     while cells > FEWEST_CELLS && count.saturating_mul(cells.pow(3)) > MOST_TEXELS {
         cells -= 4;
@@ -74,8 +78,8 @@ pub(super) fn need(facts: &Facts) -> Need {
         return Need::NotNeeded("no fog, no local volumes and no local lights".to_owned());
     }
     let (fog, lamps) = (facts.fog_count() as usize, facts.local_lights.len());
-    let volumes = facts.volumes.len() - fog;
-    Need::Needed(format!("banks of fog: {fog}, local volumes: {volumes}, local lights: {lamps}"))
+    let (volumes, seen) = (facts.volumes.len() - fog, facts.seen_volumes.len());
+    Need::Needed(format!("banks of fog: {fog}, local volumes: {volumes}, in view {seen}; local lights: {lamps}"))
 }
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {

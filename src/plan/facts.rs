@@ -7,6 +7,7 @@ use welkin_lut::{Constituent, DensityProfile, PhaseFunction, geometry};
 
 use super::disc::is_wide;
 use super::faint::{Reach, reach};
+use super::seen_volumes::seen_volumes;
 use super::thin;
 use super::{CloudScattering, OutOfView, PlanError, Sequence, Settings, Skipping, TableFormat, Treatment};
 use crate::probe::Orders;
@@ -108,8 +109,10 @@ pub struct Facts<'a> {
     pub clouds: Vec<&'a CloudLayer>,
     /// Fog, then local volumes, of which something can be seen; each by its name, as files may list them in any order.
     pub volumes: Vec<&'a Volume>,
-    /// Point and spot lights that shine.
-    pub local_lights: Vec<&'a PointLight>,
+    /// Numbers of the local volumes among them that may lie in the picture.
+    pub seen_volumes: Vec<usize>,
+    /// Point and spot lights that shine, as bright as they are at the scene's time.
+    pub local_lights: Vec<PointLight>,
     /// Of each scatterer: the number of its density profile among those of all scatterers.
     pub profile_groups: Vec<u32>,
     /// How multiply scattered light is computed.
@@ -181,6 +184,12 @@ impl<'a> Facts<'a> {
             constituents,
             emitters,
             clouds,
+            seen_volumes: seen_volumes(
+                camera,
+                camera.altitude_m.max(0.0),
+                &volumes,
+                settings.skipping.out_of_view_share,
+            ),
             volumes,
             local_lights: local_lights(scene),
             lights: sorted.lit,
@@ -237,6 +246,11 @@ impl<'a> Facts<'a> {
             Orders::Single => CloudScattering::Single,
             Orders::All => self.settings.clouds.scattering,
         }
+    }
+
+    /// How many groups of directions light in clouds is solved for in: none without a light from outside that it could be.
+    pub fn ordinate_groups(&self) -> u32 {
+        if self.lights.is_empty() { 0 } else { self.cloud_scattering().ordinate_groups() }
     }
 
     /// Whether there is fog, a local volume or a local light.
@@ -421,11 +435,14 @@ fn sort_lights<'a>(shining: &[&'a DirectionalLight], scene: &Scene, skipping: &S
     sorted
 }
 
-fn local_lights(scene: &Scene) -> Vec<&PointLight> {
+fn local_lights(scene: &Scene) -> Vec<PointLight> {
     let lights = scene.lights.iter().filter_map(|light| match light {
-        Light::Point(light) if light.intensity.iter().any(|&i| i > 0.0) => Some(light),
+        Light::Point(light) => {
+            Some(PointLight { intensity: light.intensity_at(scene.time_s), flash: None, ..light.clone() })
+        }
         _ => None,
     });
+    let lights = lights.filter(|light| light.intensity.iter().any(|&i| i > 0.0));
     let mut lights: Vec<_> = lights.collect();
     lights.sort_by(|a, b| a.name.cmp(&b.name));
     lights

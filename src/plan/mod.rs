@@ -12,6 +12,7 @@ mod lattice;
 mod multiple_scattering;
 mod named_settings;
 mod scene_traits;
+mod seen_volumes;
 mod sequence;
 mod settings;
 mod skipping;

@@ -166,10 +166,10 @@ fn mountains_behind_air(facts: &Facts, height_m: f64) -> Option<String> {
         .then(|| format!("the air between the camera and the highest summit has an optical depth of {depth:.1}"))
 }
 
-/// Clouds under all rays, under lights that no cloud can hide from what is seen.
+/// Clouds under all rays, under lights that no cloud can hide from what is seen. Lamps may shine through them.
 fn clouds_below_view(facts: &Facts, seen: &SeenAltitudes, share: f64) -> Option<String> {
     let top_m = facts.clouds.iter().map(|layer| layer.top_m).max_by(f64::total_cmp)?;
-    if seen.lowest_m <= share * top_m {
+    if seen.lowest_m <= share * top_m || facts.has_local_media() {
         return None;
     }
     if facts.out_of_view.air.is_some() {
@@ -186,7 +186,7 @@ fn clouds_below_view(facts: &Facts, seen: &SeenAltitudes, share: f64) -> Option<
 /// Clouds over all rays, where no light shines that they could keep from what is seen.
 fn clouds_above_view(facts: &Facts, seen: &SeenAltitudes) -> Option<String> {
     let base_m = facts.clouds.iter().map(|layer| layer.base_m).min_by(f64::total_cmp)?;
-    let dark = facts.lights.is_empty() && facts.emitters.is_empty();
+    let dark = facts.lights.is_empty() && facts.emitters.is_empty() && !facts.has_local_media();
     (dark && seen.highest_m < base_m).then(|| {
         let highest_m = seen.highest_m;
         format!(

@@ -72,8 +72,8 @@ pub(super) fn limb_factor(exponent: f64, relative_squared: f64) -> f64 {
 }
 
 impl Emitter {
-    /// The scene's light.
-    pub fn new(light: &Light) -> Self {
+    /// The scene's light at a time.
+    pub fn new(light: &Light, time_s: f64) -> Self {
         match light {
             Light::Directional(sun) if sun.angular_radius_rad == 0.0 => {
                 Self::Beam { toward: sun.direction.to_vector(), irradiance: sun.irradiance }
@@ -86,7 +86,7 @@ impl Emitter {
                 sphere: sun.sphere,
             },
             Light::Point(point) => {
-                Self::Point { position_m: point.position_m, intensity: point.intensity, cone: point.cone }
+                Self::Point { position_m: point.position_m, intensity: point.intensity_at(time_s), cone: point.cone }
             }
             Light::Environment(sky) => Self::Environment { radiance: sky.radiance },
         }

@@ -56,7 +56,7 @@ impl World {
         let clouds = scene.clouds.iter().filter_map(|layer| CloudShell::body(layer, planet.radius_m, scene.time_s));
         let volumes = scene.volumes.iter().filter_map(|volume| volumes::body(volume, planet.radius_m, scene.time_s));
         world.bodies = clouds.chain(volumes).collect();
-        world.lights = scene.lights.iter().map(Emitter::new).collect();
+        world.lights = scene.lights.iter().map(|light| Emitter::new(light, scene.time_s)).collect();
         world.relief = scene.terrain.clone().map(Arc::new);
         world
     }

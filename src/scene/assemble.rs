@@ -9,8 +9,8 @@ use welkin_lut::{BAND_COUNT, BAND_WAVELENGTHS_NM, Planet};
 
 use super::clouds::assemble_clouds;
 use super::file::{
-    CameraFile, ChannelsFile, DisplayFile, LightsFile, MediumFile, PlanetFile, SceneFile, SunFile, TerrainFile,
-    ToneMapFile, WhenFile, WhiteFile, listed,
+    CameraFile, ChannelsFile, DisplayFile, FlashFile, LightsFile, MediumFile, PlanetFile, SceneFile, SunFile,
+    TerrainFile, ToneMapFile, WhenFile, WhiteFile, listed,
 };
 use super::medium::assemble_medium;
 use super::moon::assemble_moon;
@@ -19,8 +19,8 @@ use super::spectrum::{Sources, Spectrum, White};
 use super::sun_position::sun_direction;
 use super::volumes::assemble_volumes;
 use super::{
-    Camera, Cone, Direction, DirectionalLight, Display, EnvironmentLight, Light, PointLight, Preset, Problem, Scene,
-    Terrain, ToneMap,
+    Camera, Cone, Direction, DirectionalLight, Display, EnvironmentLight, Flash, Light, PointLight, Preset, Problem,
+    Scene, Terrain, ToneMap,
 };
 
 const DEFAULT_FIELD_OF_VIEW_DEG: f64 = 60.0;
@@ -200,6 +200,7 @@ fn add_lights(file: &LightsFile, lights: &mut Vec<Light>) -> Result<(), Problem>
             position_m,
             intensity: light.intensity.get(),
             cone: None,
+            flash: light.flash.as_ref().map(assemble_flash),
         }));
     }
     for (index, light) in file.spot.iter().enumerate() {
@@ -219,11 +220,16 @@ fn add_lights(file: &LightsFile, lights: &mut Vec<Light>) -> Result<(), Problem>
                 inner_cosine: inner_deg.to_radians().cos(),
                 outer_cosine: outer_deg.to_radians().cos(),
             }),
+            flash: light.flash.as_ref().map(assemble_flash),
         }));
     }
     let environment = file.environment.as_ref().map(|light| EnvironmentLight { radiance: light.radiance.get() });
     lights.extend(environment.map(Light::Environment));
     Ok(())
+}
+
+fn assemble_flash(file: &FlashFile) -> Flash {
+    Flash { start_s: file.start_s.get(), decay_s: file.decay_s.get() }
 }
 
 fn assemble_camera(file: &CameraFile) -> Camera {

@@ -59,6 +59,34 @@ pub struct PointLight {
     pub intensity: Bands,
     /// What it shines into; none is everywhere.
     pub cone: Option<Cone>,
+    /// When it shines, for a moment; none is always.
+    pub flash: Option<Flash>,
+}
+
+impl PointLight {
+    /// Radiant intensity at a time of the scene, W·sr⁻¹·nm⁻¹.
+    pub fn intensity_at(&self, time_s: f64) -> Bands {
+        let share = self.flash.map_or(1.0, |flash| flash.share(time_s));
+        self.intensity.map(|intensity| share * intensity)
+    }
+}
+
+/// Light that comes at once and fades: a stroke of lightning, an explosion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flash {
+    /// When it is brightest, s of the scene's time.
+    pub start_s: f64,
+    /// In which time it fades to 1/e, s; above 0.
+    pub decay_s: f64,
+}
+
+impl Flash {
+    /// Share of the intensity at a time: none before the start, and e^(-(t - start) / decay) after it. Less than a millionth
+    /// counts as none.
+    pub fn share(&self, time_s: f64) -> f64 {
+        let share = ((self.start_s - time_s) / self.decay_s).exp();
+        if share > 1.0 || share < 1e-6 { 0.0 } else { share }
+    }
 }
 
 /// Directions that a spot light shines into.

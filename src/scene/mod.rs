@@ -27,7 +27,7 @@ pub use direction::Direction;
 pub use effect::Effect;
 pub use error::{InvalidField, SceneError};
 pub use file::schema;
-pub use light::{Cone, DirectionalLight, EnvironmentLight, Light, PointLight};
+pub use light::{Cone, DirectionalLight, EnvironmentLight, Flash, Light, PointLight};
 pub use lit_sphere::LitSphere;
 pub use locate::Place;
 pub use preset::{Preset, PresetSun};

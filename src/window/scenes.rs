@@ -30,6 +30,7 @@ scenes!(
     "fog/glowing-gas",
     "fog/smoke-before-sun",
     "fog/under-clouds",
+    "fog/lightning",
 );
 
 /// The scene that the window opens with where none is named.

@@ -108,6 +108,16 @@ impl Volume {
         bands.into_iter().all(|value| value <= 0.0) || self.grid.as_ref().is_some_and(|grid| grid.largest() <= 0.0)
     }
 
+    /// Middle, m, and radius, m, of a ball around a local form; none for fog.
+    pub fn bounding_sphere(&self) -> Option<([f64; 3], f64)> {
+        match self.form {
+            VolumeForm::Box { centre_m, size_m, .. } | VolumeForm::Ellipsoid { centre_m, size_m, .. } => {
+                Some((centre_m, 0.5 * size_m.iter().map(|size_m| size_m * size_m).sum::<f64>().sqrt()))
+            }
+            VolumeForm::Fog { .. } => None,
+        }
+    }
+
     /// Altitudes between which fog lies, m; none for local forms.
     pub fn altitudes_m(&self) -> Option<[f64; 2]> {
         match self.form {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use welkin_lut::cloud::CloudLayer;
 use welkin_lut::lamp_field::LampField;
 use welkin_lut::volume::{Volume, VolumeParameters};
 use welkin_lut::{BAND_COUNT, Bands, PhaseFunction};
@@ -44,6 +45,16 @@ fn radius(volume: &Volume) -> Bands {
     volume.extinction_per_m().map(|extinction| extinction * extent_m)
 }
 
+/// Mean density of a cloud's inside, relative to the densest. The edge of a ball of it is that far off in optical depths: what lies
+/// between a place and a lamp is looked at for itself.
+const DENSITY_IN_CLOUDS: f64 = 0.5;
+
+/// Of a layer of clouds: a cloud is taken to be as wide as the layer is thick.
+fn matter_of_clouds(layer: &CloudLayer) -> Matter {
+    let radius = 0.5 * DENSITY_IN_CLOUDS * layer.extinction_per_m() * (layer.top_m - layer.base_m);
+    Matter { phase: layer.phase.clone(), albedo: layer.albedo, radius: [radius; BAND_COUNT] }
+}
+
 fn matter(volume: &Volume) -> Matter {
     let extinction = volume.extinction_per_m();
     let albedo = std::array::from_fn(|band| {
@@ -80,8 +91,8 @@ impl LampFields {
     pub fn prepare(&mut self, facts: &Facts) {
         let mut wanted: Vec<Matter> = Vec::new();
         if super::local_light_count(facts) > 0 {
-            for volume in facts.volumes.iter().filter(|volume| volume.scatters()) {
-                let matter = matter(volume);
+            let volumes = facts.volumes.iter().filter(|volume| volume.scatters()).map(|volume| matter(volume));
+            for matter in volumes.chain(facts.clouds.iter().map(|layer| matter_of_clouds(layer))) {
                 if !wanted.contains(&matter) {
                     wanted.push(matter);
                 }
@@ -98,8 +109,16 @@ impl LampFields {
 
     /// The number of a volume's table.
     pub(super) fn of_volume(&self, volume: &Volume) -> u32 {
-        let own = matter(volume);
-        self.matter.iter().position(|matter| *matter == own).map_or(NO_FIELD, |index| index as u32)
+        self.of(&matter(volume))
+    }
+
+    /// The number of the table of a layer of clouds.
+    pub(super) fn of_clouds(&self, layer: &CloudLayer) -> u32 {
+        self.of(&matter_of_clouds(layer))
+    }
+
+    fn of(&self, own: &Matter) -> u32 {
+        self.matter.iter().position(|matter| matter == own).map_or(NO_FIELD, |index| index as u32)
     }
 
     /// WGSL `array<vec4<f32>>`; one where there is none.

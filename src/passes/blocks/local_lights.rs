@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
+use welkin_lut::cloud::CloudLayer;
 use welkin_lut::volume::{Volume, VolumeField, VolumeForm, VolumeParameters};
 use welkin_lut::{BAND_COUNT, Bands};
 
@@ -172,6 +173,14 @@ fn surroundings(facts: &Facts, at: DVec3) -> Surroundings {
     all
 }
 
+/// The layer of clouds between whose altitudes a lamp hangs. Whether there is a cloud about it does not matter: without one there is
+/// no depth between it and any place.
+fn clouds_around<'a>(facts: &'a Facts, at: DVec3) -> Option<&'a CloudLayer> {
+    let radius_m = facts.scene.planet.radius_m;
+    let altitude_m = (at + DVec3::Z * radius_m).length() - radius_m;
+    facts.clouds.iter().copied().find(|layer| (layer.base_m..=layer.top_m).contains(&altitude_m))
+}
+
 /// Where a lamp brings one in `share` of what it brings to its neighbour: e^(-c d) / d² falls that far.
 fn reach_m(neighbour_m: f64, around: &Surroundings, share: f64) -> f64 {
     let extinction = (0..BAND_COUNT)
@@ -204,10 +213,17 @@ impl LocalLightBlock {
             outer_cosine: outer as f32,
             solid_share: solid_share as f32,
             core_reach_m: lamp.core_reach_m as f32,
-            field: around.densest.map_or(NO_FIELD, |index| fields.of_volume(facts.volumes[index])),
+            field: match (around.densest, clouds_around(facts, lamp.position_m)) {
+                (Some(index), _) => fields.of_volume(facts.volumes[index]),
+                (None, Some(layer)) => fields.of_clouds(layer),
+                (None, None) => NO_FIELD,
+            },
             lists_first: list.start as u32,
             list_count: list.len() as u32,
-            backward: around.backward as f32,
+            backward: match (around.densest, clouds_around(facts, lamp.position_m)) {
+                (None, Some(layer)) => (1.0 - layer.phase.mean_cosine()) as f32,
+                _ => around.backward as f32,
+            },
             padding: 0.0,
         }
     }

@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use welkin_lut::volume::{Volume, VolumeForm};
+use welkin_lut::volume::Volume;
 
 use super::local_lights::Lamp;
 use crate::plan::Facts;
 
-/// Numbers of volumes, list after list.
+/// Numbers of volumes, list after list; the first is that of the local volumes whose light is kept, in the order of their blocks.
 pub struct LocalLists {
     indices: Vec<u32>,
     volumes: Vec<Range<usize>>,
@@ -17,12 +17,7 @@ pub struct LocalLists {
 
 /// Middle and radius of a local volume.
 fn sphere(volume: &Volume) -> Option<(DVec3, f64)> {
-    match volume.form {
-        VolumeForm::Box { centre_m, size_m, .. } | VolumeForm::Ellipsoid { centre_m, size_m, .. } => {
-            Some((DVec3::from_array(centre_m), 0.5 * DVec3::from_array(size_m).length()))
-        }
-        VolumeForm::Fog { .. } => None,
-    }
+    volume.bounding_sphere().map(|(centre_m, radius_m)| (DVec3::from_array(centre_m), radius_m))
 }
 
 impl LocalLists {
@@ -30,7 +25,7 @@ impl LocalLists {
     pub fn new(facts: &Facts, lamps: &[Lamp]) -> Self {
         let spheres: Vec<_> = facts.volumes.iter().map(|volume| sphere(volume)).collect();
         let local = || spheres.iter().enumerate().filter_map(|(index, sphere)| sphere.map(|sphere| (index, sphere)));
-        let mut indices = Vec::new();
+        let mut indices: Vec<_> = facts.seen_volumes.iter().map(|&index| index as u32).collect();
         let mut list = |of: &dyn Fn(usize, (DVec3, f64)) -> bool| {
             let first = indices.len();
             indices.extend(local().filter(|&(index, sphere)| of(index, sphere)).map(|(index, _)| index as u32));

@@ -1,6 +1,7 @@
 //! Fog and local volumes as the shaders read them.
 
 use bytemuck::{Pod, Zeroable};
+use welkin_lut::cloud::CloudLayer;
 use welkin_lut::volume::{Volume, VolumeForm, VolumeParameters};
 use welkin_lut::{BAND_COUNT, Bands, PhaseFunction};
 
@@ -89,7 +90,9 @@ impl VolumeBlock {
         let [g, f] = [1, 2].map(|degree| volume.phase.legendre_moment(degree));
         let fog = facts.fog_count() as usize;
         let levels = facts.settings.volumes.fog_levels as usize;
-        let first_block = if index < fog { index * levels } else { fog * levels + index - fog };
+        // One that is not seen has no block; nothing asks for it.
+        let local_block = facts.seen_volumes.iter().position(|&seen| seen == index).unwrap_or(0);
+        let first_block = if index < fog { index * levels } else { fog * levels + local_block };
         let is_even = volume.edge == 0.0 && p.noise_strength == 0.0 && volume.grid.is_none() && index >= fog;
         let occluders = lists.of_volume(index);
         Self {
@@ -124,7 +127,8 @@ impl VolumeBlock {
     }
 }
 
-/// WGSL `array<Volume>`, with one that is nothing where there is none.
+/// WGSL `array<Volume>`, with one that is nothing where there is none. Behind the volumes stand the layers of clouds, of which only
+/// the table of lamps' light is filled in: to a lamp they are one more kind of matter.
 pub fn volume_blocks(facts: &Facts, lists: &LocalLists, fields: &LampFields) -> Vec<VolumeBlock> {
     let mut first = 0;
     let mut blocks = Vec::with_capacity(facts.volumes.len().max(1));
@@ -132,6 +136,8 @@ pub fn volume_blocks(facts: &Facts, lists: &LocalLists, fields: &LampFields) -> 
         blocks.push(VolumeBlock::new(facts, index, lists, fields, first));
         first += volume.grid.as_ref().map_or(0, |grid| grid.samples().len() as u32);
     }
+    let of_clouds = |layer| VolumeBlock { lamp_field: fields.of_clouds(layer), ..VolumeBlock::zeroed() };
+    blocks.extend(facts.clouds.iter().map(|layer| of_clouds(layer)));
     blocks.resize(blocks.len().max(1), VolumeBlock::zeroed());
     blocks
 }
@@ -160,7 +166,8 @@ pub fn volume_term_count(facts: &Facts) -> u32 {
     if facts.cloud_scattering() == CloudScattering::Single { 1 } else { 2 }
 }
 
-/// WGSL `array<VolumeTerm>`: volume by volume, and after the terms of each its phase function, with which it scatters light of lamps.
+/// WGSL `array<VolumeTerm>`: volume by volume, and after the terms of each its phase function, with which it scatters light of lamps;
+/// behind them layers of clouds, of which only that is asked.
 pub fn volume_terms(facts: &Facts) -> Vec<VolumeTermBlock> {
     let terms = |volume: &Volume| {
         let phase = if volume.scatters() { &volume.phase } else { &PhaseFunction::Isotropic };
@@ -179,7 +186,14 @@ pub fn volume_terms(facts: &Facts) -> Vec<VolumeTermBlock> {
             once,
         ]
     };
-    let mut all: Vec<_> = facts.volumes.iter().flat_map(|volume| terms(volume)).collect();
+    let of_clouds = |layer: &CloudLayer| {
+        vec![
+            VolumeTermBlock::new([1.0; BAND_COUNT], &layer.phase, &[(1.0, 1.0)]);
+            volume_term_count(facts) as usize + 1
+        ]
+    };
+    let volumes = facts.volumes.iter().flat_map(|volume| terms(volume));
+    let mut all: Vec<_> = volumes.chain(facts.clouds.iter().flat_map(|layer| of_clouds(layer))).collect();
     all.resize(all.len().max(1), VolumeTermBlock::zeroed());
     all
 }

@@ -58,6 +58,7 @@ fn fine_bytes(grid: &super::Grid) -> u64 {
 fn need(facts: &Facts) -> Need {
     match (clouds::need(facts), problem(facts)) {
         (Need::NotNeeded(reason), _) => Need::NotNeeded(reason),
+        (_, None) if facts.lights.is_empty() => Need::NotNeeded("no directional light shines".to_owned()),
         (_, None) => Need::NotNeeded("light in clouds is found without ordinates".to_owned()),
         (_, Some(problem)) => {
             let (levels, sweeps) = (problem.grid.levels.len(), Relaxation::of(facts).sweeps);

@@ -12,7 +12,7 @@ const REACH_M: f64 = 60_000.0;
 
 /// The problem of a scene's clouds, if ordinates are asked for and there is something to solve.
 pub fn problem(facts: &Facts) -> Option<Problem> {
-    let directions = match facts.cloud_scattering().ordinate_groups() {
+    let directions = match facts.ordinate_groups() {
         2 => Directions::Eight,
         4 => Directions::Sixteen,
         _ => return None,

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::value::Datetime;
 
-use super::number::{Altitude, AngularRadius, Azimuth, ConeAngle, Elevation, Light, Longitude, Number};
+use super::number::{Altitude, AngularRadius, Azimuth, ConeAngle, Duration, Elevation, Light, Longitude, Number, Time};
 use super::per_band::PerBand;
 
 /// The sun: where it stands, and what differs from the preset's.
@@ -84,6 +84,18 @@ pub struct PointFile {
     pub position_m: [Number<Altitude>; 3],
     /// Radiant intensity, W/(sr nm).
     pub intensity: PerBand<Light>,
+    /// When it shines, for a moment; by default always.
+    pub flash: Option<FlashFile>,
+}
+
+/// Light that comes at once and fades.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FlashFile {
+    /// When it is brightest, s of the scene's time.
+    pub start_s: Number<Time>,
+    /// In which time it fades to 1/e, s.
+    pub decay_s: Number<Duration>,
 }
 
 /// A point that shines into a cone.
@@ -104,6 +116,8 @@ pub struct SpotFile {
     pub inner_deg: Number<ConeAngle>,
     /// Angle from the axis beyond which it does not shine, degrees; above `inner_deg`.
     pub outer_deg: Number<ConeAngle>,
+    /// When it shines, for a moment; by default always.
+    pub flash: Option<FlashFile>,
 }
 
 /// Uniform surroundings.

@@ -11,7 +11,7 @@ mod terrain;
 mod volumes;
 
 pub use clouds::CloudFile;
-pub use light::{LightsFile, SunFile, WhenFile};
+pub use light::{FlashFile, LightsFile, SunFile, WhenFile};
 pub use medium::{ConstituentChange, ConstituentFile, MediumFile, PhaseFile, ProfileFile};
 pub use moon::MoonFile;
 pub use per_band::PerBand;

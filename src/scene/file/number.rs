@@ -138,6 +138,8 @@ macro_rules! intervals {
 intervals! {
     /// A length that is not zero, m: up to the size of a star.
     Length: Excluded(0.0), Included(1e10);
+    /// A span of time, s.
+    Duration: Excluded(0.0), Included(1e10);
     /// The size of a local medium or of what is in it, m.
     VolumeLength: Included(1e-3), Included(1e7);
     /// Half of a cone's opening, degrees.
