@@ -85,7 +85,7 @@ impl Flash {
     /// counts as none.
     pub fn share(&self, time_s: f64) -> f64 {
         let share = ((self.start_s - time_s) / self.decay_s).exp();
-        if share > 1.0 || share < 1e-6 { 0.0 } else { share }
+        if (1e-6..=1.0).contains(&share) { share } else { 0.0 }
     }
 }
 
