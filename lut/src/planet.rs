@@ -48,4 +48,10 @@ impl Planet {
         }
         Ok(())
     }
+
+    /// The angle from the horizon at which the top of the air is seen from the ground, or lit from below it, rad: √(2 top /
+    /// radius) while that is small. Night falls within a few of them.
+    pub fn reach_rad(&self) -> f64 {
+        (2.0 * self.atmosphere_height_m / self.radius_m).sqrt()
+    }
 }

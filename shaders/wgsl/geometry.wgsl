@@ -108,6 +108,13 @@ fn shadow_interval_m(radius_m: f32, altitude_m: f32, mu: f32, mu_s: f32, nu: f32
     return vec2<f32>(max(start, 0.0), min(end, length_m));
 }
 
+// Distance at which a ray passes closest to the axis of the planet's shadow, in [0, length_m]; 0 on the side of the light.
+fn closest_to_shadow_m(radius_m: f32, altitude_m: f32, mu: f32, mu_s: f32, nu: f32, length_m: f32) -> f32 {
+    let r = radius_m + altitude_m;
+    let closest_m = r * (nu * mu_s - mu) / max(1.0 - nu * nu, 1e-12);
+    return select(0.0, clamp(closest_m, 0.0, length_m), r * mu_s + closest_m * nu < 0.0);
+}
+
 // acos, within 2e-8 of its value before rounding: what devices have may be thousands of times farther off, which tables
 // show. Abramowitz & Stegun, Handbook of Mathematical Functions, 4.4.46.
 fn precise_acos(x: f32) -> f32 {

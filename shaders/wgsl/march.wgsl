@@ -105,13 +105,24 @@ fn air_ray(altitude_m: f32, mu: f32, mu_s: f32, nu: f32, hits_ground: bool) -> A
     return ray;
 }
 
-// The same ray, cut also where it enters and leaves the planet's shadow.
+// The same ray, cut also where it enters and leaves the planet's shadow, or where it comes closest: beside the shadow light
+// has grazed the ground and is nearly out, which nodes that know nothing of it pass over.
 fn cut_at_shadow(ray: AirRay) -> AirRay {
     var cut = ray;
     let radius_m = atmosphere.radius_m;
     cut.shadow_m = geometry::shadow_interval_m(radius_m, ray.altitude_m, ray.mu, ray.mu_s, ray.nu, ray.length_m);
+    if cut.shadow_m.x >= cut.shadow_m.y {
+        cut.shadow_m = vec2<f32>(
+            geometry::closest_to_shadow_m(radius_m, ray.altitude_m, ray.mu, ray.mu_s, ray.nu, ray.length_m)
+        );
+    }
     cut.leg_ends_m = sorted_leg_ends_m(cut);
     return cut;
+}
+
+// Whether that has given the ray another leg.
+fn is_cut_by_shadow(ray: AirRay) -> bool {
+    return ray.shadow_m.x <= ray.shadow_m.y && ray.shadow_m.y > 0.0;
 }
 
 // A view ray, whose observer may stand in space: then it starts where it enters the air, if it does.
@@ -150,8 +161,8 @@ fn table_altitude_m(altitude_m: f32) -> f32 {
 }
 
 fn sorted_leg_ends_m(ray: AirRay) -> vec4<f32> {
-    let in_shadow = ray.shadow_m.x < ray.shadow_m.y;
-    let shadow_m = select(vec2<f32>(0.0), ray.shadow_m, in_shadow);
+    let is_cut = ray.shadow_m.x <= ray.shadow_m.y;
+    let shadow_m = select(vec2<f32>(0.0), ray.shadow_m, is_cut);
     let a = clamp(ray.tangent_m, 0.0, ray.length_m);
     let low = min(a, shadow_m.x);
     let high = max(a, shadow_m.y);

@@ -5,8 +5,11 @@
 // then of each scatterer's single scattering without the phase function, over the share of air that is lit
 // (welkin::shade). All for unit irradiance of the light, and over the length of air along the ray.
 //
+// Where the edge of the planet's shadow is in view the air's mean transmittance is left out as well: rows of the table pass
+// limbs on which light falls steeply, and there the ozone's kinks would show.
+//
 // Definitions: AIR (there is any), LIT (a directional light shines on air that scatters), GROUND (light from the ground
-// belongs in the picture), MULTIPLE_SCATTERING, EMISSION (the air gives off light of its own).
+// belongs in the picture), MULTIPLE_SCATTERING, EDGE_OF_SHADOW, EMISSION (the air gives off light of its own).
 
 #import welkin::atmosphere::{atmosphere, phase_per_sr, PI, SCATTERER_COUNT}
 #import welkin::disc::{beam_count, beam_mu_s, beam_weight, direct_irradiance_of_disc}
@@ -76,6 +79,12 @@ fn view_transmittance(direction: SkyDirection) -> vec3<f32> {
     return exp(-view_optical_depth(direction));
 }
 
+// ln of how much the air along the ray lets through to the observer on average, if it shone evenly: of (1 - exp(-tau)) / tau.
+fn ln_mean_transmittance(direction: SkyDirection) -> vec3<f32> {
+    let tau = max(view_optical_depth(direction), vec3<f32>(1e-20));
+    return select(log((1.0 - exp(-tau)) / tau), -0.5 * tau, tau < vec3<f32>(1e-3));
+}
+
 // One layer of the sky view, over the length of air, 1/m: multiply scattered radiance, or a scatterer's light without
 // its phase function.
 fn sky_view(light: u32, layer: u32, direction: SkyDirection) -> vec3<f32> {
@@ -84,13 +93,16 @@ fn sky_view(light: u32, layer: u32, direction: SkyDirection) -> vec3<f32> {
     );
     let uv = mapping::inset(unit, vec2<f32>(textureDimensions(sky_view_table)));
     let first = layer_of(light, direction.below_horizon);
-    var ln_scale = -LN_SCALE;
+    var ln_scale = vec3<f32>(-LN_SCALE);
+#ifdef EDGE_OF_SHADOW
+    ln_scale += ln_mean_transmittance(direction);
+#endif
 #ifdef SHADE
     if layer >= SINGLE_LAYER {
         let ray = view_ray(
             observer.altitude_m, cos(direction.zenith_rad), light_mu_s(light), direction.nu, direction.below_horizon
         );
-        ln_scale += ln_lit_share(light, ray, layer - SINGLE_LAYER);
+        ln_scale += vec3<f32>(ln_lit_share(light, ray, layer - SINGLE_LAYER));
     }
 #endif
     return exp(textureSampleLevel(sky_view_table, table_sampler, uv, first + layer, 0.0).rgb + ln_scale);

@@ -10,10 +10,12 @@
 #import welkin::atmosphere::SCATTERER_COUNT
 #import welkin::disc::{beam_count, beam_mu_s, beam_weight}
 #import welkin::mapping
-#import welkin::march::{air_length_m, cut_at_shadow, table_altitude_m, view_ray, AirRay}
+#import welkin::march::{air_length_m, cut_at_shadow, is_cut_by_shadow, table_altitude_m, view_ray, AirRay}
 #import welkin::observer::{light_mu_s, observer}
 #import welkin::shade::ln_lit_share
-#import welkin::sky::{layer_of, LN_SCALE, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER}
+#import welkin::sky::{
+    layer_of, ln_mean_transmittance, LN_SCALE, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER, SkyDirection
+}
 #ifdef FANS
 #import welkin::view_integrals::{integrate_fan, FAN_COUNT}
 #endif
@@ -76,7 +78,11 @@ fn put(texel: vec2<u32>, view: mapping::ZenithAzimuth, half: Half, integrals: In
     let mu = cos(view.zenith_rad);
     let per_m = 1.0 / max(air_length_m(half.altitude_m, mu, half.below_horizon), 1e-3);
     let first = layer_of(half.light, half.below_horizon);
-    let multiple = logarithm(sum.multiple * per_m) + LN_SCALE;
+    var ln_scale = vec3<f32>(LN_SCALE);
+#ifdef EDGE_OF_SHADOW
+    ln_scale -= ln_mean_transmittance(SkyDirection(view.zenith_rad, view.azimuth_rad, 0.0, half.below_horizon));
+#endif
+    let multiple = logarithm(sum.multiple * per_m) + ln_scale;
     textureStore(sky_view_image, texel, first + MULTIPLE_LAYER, vec4<f32>(multiple, 0.0));
     let mu_s = light_mu_s(half.light);
     let to_middle = view_ray(half.altitude_m, mu, mu_s, nu_of(view, mu_s), half.below_horizon);
@@ -84,20 +90,20 @@ fn put(texel: vec2<u32>, view: mapping::ZenithAzimuth, half: Half, integrals: In
         // Where all is dark the share says nothing.
         let is_lit = sum.single[c] * per_m > vec3<f32>(DARK);
         let share = select(vec3<f32>(0.0), vec3<f32>(ln_lit_share(half.light, to_middle, c)), is_lit);
-        let single = logarithm(sum.single[c] * per_m) + LN_SCALE - share;
+        let single = logarithm(sum.single[c] * per_m) + ln_scale - share;
         textureStore(sky_view_image, texel, first + SINGLE_LAYER + c, vec4<f32>(single, 0.0));
     }
 }
 
 #ifdef FANS
-// Whether the planet's shadow cuts some ray of a fan: each then has legs of its own.
+// Whether the planet's shadow, or its nearness, cuts some ray of a fan: each then has legs of its own.
 fn meets_shadow(first: vec2<u32>, half: Half) -> bool {
     var meets = false;
     for (var beam = 0u; beam < beam_count(half.light); beam++) {
         let mu_s = beam_mu_s(half.light, beam, light_mu_s(half.light));
         for (var k = 0u; k < FAN_COUNT; k++) {
             let ray = ray_of(view_of(first + vec2<u32>(k, 0u), half), half, mu_s);
-            meets |= ray.shadow_m.x < ray.shadow_m.y;
+            meets |= is_cut_by_shadow(ray);
         }
     }
     return meets;

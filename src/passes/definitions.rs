@@ -16,7 +16,7 @@ const MAX_INVOCATIONS: u32 = 128;
 /// The definitions that every pass of a frame is compiled with.
 pub fn definitions(facts: &Facts) -> Definitions {
     let (settings, groups, directions) = (&facts.settings, &facts.groups, &facts.settings.directions);
-    let grid = &settings.source_grid;
+    let grid = &facts.source_grid();
     let lattice_cell = lattice_cell(facts).ok();
     let has_overlay = facts.has_overlay();
     let numbers = [
@@ -95,6 +95,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("LIT", facts.is_lit()),
         ("EMISSION", !facts.emitters.is_empty()),
         ("SHADE", facts.is_in_shadow()),
+        ("EDGE_OF_SHADOW", facts.sees_edge_of_shadow()),
         ("DISC", facts.lights.iter().any(|light| facts.is_wide(light))),
         ("SPHERE", facts.has_sphere()),
         ("GROUND", facts.orders == Orders::All),

@@ -21,7 +21,7 @@ pub const PASS: Pass = Pass {
 
 /// The table's shape: tiles by azimuth and zenith angle, and one row more for irradiance; a layer for each profile.
 pub(super) fn shape(facts: &Facts) -> ImageShape {
-    let ([width, height], grid) = (facts.settings.source_size, facts.settings.source_grid);
+    let ([width, height], grid) = (facts.settings.source_size, facts.source_grid());
     ImageShape::D2Array(width * grid.azimuths, height * (grid.cosines() + 1), facts.profile_group_count())
 }
 
@@ -36,7 +36,7 @@ pub(super) fn inputs(facts: &Facts) -> Fingerprint {
     let settings = &facts.settings;
     let sampling = (
         (settings.nodes_per_leg, settings.quadrature),
-        settings.source_grid,
+        facts.source_grid(),
         settings.source_size,
         settings.source_orders,
     );

@@ -26,7 +26,7 @@ impl Parameters {
             ("emission", emission_block(facts)),
             ("gauss_nodes", bytes(&gauss_nodes(&facts.settings))),
             ("cosine_nodes", bytes(&cosine_nodes(&facts.settings))),
-            ("grid_nodes", bytes(&grid_nodes(&facts.settings))),
+            ("grid_nodes", bytes(&grid_nodes(facts.source_grid()))),
             ("observer", observer_block(facts)),
             ("camera", bytemuck::bytes_of(&CameraBlock::new(&facts.scene.camera)).to_vec()),
         ]))

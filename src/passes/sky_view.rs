@@ -9,20 +9,24 @@ const NAME: &str = "sky_view";
 /// Columns that one invocation fills where there are few invocations: their rays pass the same air.
 pub(super) const FAN_COUNT: u32 = 4;
 
+/// Beside the edge of the planet's shadow light goes out within a few kilometres, and the edge runs aslant through the
+/// table's columns: where it is in view there are so many times more of them.
+const COLUMNS_AT_EDGE_OF_SHADOW: u32 = 2;
+
 /// The pass.
 pub const PASS: Pass = Pass {
     declaration: Declaration {
         name: NAME,
         need,
-        reads: &["optical_depth_table", "multiple_scattering_table"],
+        reads: &["optical_depth_table", "view_optical_depth_table", "multiple_scattering_table"],
         writes: &["sky_view_table"],
         inputs: |facts| {
             // Azimuths in the table count from the light, so only elevations matter, and a disc's width where it does.
             let disc = |light| facts.is_wide(light).then_some((light.angular_radius_rad, light.limb_darkening));
             let discs: Vec<_> = facts.lights.iter().map(|light| disc(light)).collect();
             let settings = &facts.settings;
-            let sampling = (settings.nodes_per_leg, settings.quadrature, settings.sky_view_size);
-            let observer = (facts.observer_altitude_m(), facts.is_in_shadow());
+            let sampling = (settings.nodes_per_leg, settings.quadrature, size(facts));
+            let observer = (facts.observer_altitude_m(), facts.is_in_shadow(), facts.sees_edge_of_shadow());
             Fingerprint::of(&(discs, observer, sampling)).following(elevations(facts))
         },
         bytes: |facts| shape(facts).texels() * table_format(facts).texel_bytes(),
@@ -36,8 +40,14 @@ pub(super) fn elevations(facts: &Facts) -> impl Iterator<Item = (f64, f64)> {
     facts.lights.iter().map(move |light| (light.direction.elevation_rad, elevation_slack_rad(light, share)))
 }
 
+/// Azimuths and elevations of each half.
+fn size(facts: &Facts) -> [u32; 2] {
+    let [columns, rows] = facts.settings.sky_view_size;
+    if facts.sees_edge_of_shadow() { [COLUMNS_AT_EDGE_OF_SHADOW * columns, rows] } else { [columns, rows] }
+}
+
 fn shape(facts: &Facts) -> ImageShape {
-    let [width, height] = facts.settings.sky_view_size;
+    let [width, height] = size(facts);
     ImageShape::D2Array(width, height, facts.sky_view_layers())
 }
 

@@ -9,9 +9,14 @@ use super::disc::is_wide;
 use super::faint::{Reach, reach};
 use super::seen_volumes::seen_volumes;
 use super::thin;
-use super::{CloudScattering, OutOfView, PlanError, Sequence, Settings, Skipping, TableFormat, Treatment};
+use super::{CloudScattering, OutOfView, PlanError, Sequence, Settings, Skipping, SourceGrid, TableFormat, Treatment};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, GroupColour, Light, PointLight, Scene, WavelengthGroup};
+
+/// How far the Earth's air of 100 km reaches beyond the horizon, rad.
+const EARTHS_REACH_RAD: f64 = 0.177;
+/// As many times more directions in the low sky as the largest planet gets.
+const MOST_LOW_DIRECTIONS: f64 = 2.0;
 
 /// What is to come out of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -309,9 +314,23 @@ impl<'a> Facts<'a> {
         self.lights.iter().any(|light| light.direction.elevation_rad.sin() < horizon_mu)
     }
 
+    /// Whether the edge of the planet's shadow from some light lies within the view of an observer whom that light reaches.
+    pub fn sees_edge_of_shadow(&self) -> bool {
+        let horizon_mu = geometry::horizon_mu(self.scene.planet.radius_m, self.observer_altitude_m());
+        self.lights.iter().any(|light| (horizon_mu..=-horizon_mu).contains(&light.direction.elevation_rad.sin()))
+    }
+
     /// Degrees of spherical harmonics that the field keeps: one where it counts as isotropic.
     pub fn degree_count(&self) -> u32 {
         if self.treatment == Treatment::IsotropicSeries { 1 } else { self.settings.degree_count }
+    }
+
+    /// Directions in which the source function is tabulated. Twilight glows close to the horizon, the closer the larger the
+    /// planet is against its air; nodes lie at distances from the horizon that go as one over the square of their number.
+    pub fn source_grid(&self) -> SourceGrid {
+        let grid = self.settings.source_grid;
+        let more = (EARTHS_REACH_RAD / self.scene.planet.reach_rad()).sqrt().clamp(1.0, MOST_LOW_DIRECTIONS);
+        SourceGrid { low: (f64::from(grid.low) * more).round() as u32, ..grid }
     }
 
     /// Coefficients (l, m), m ≥ 0, of the field.

@@ -11,8 +11,7 @@ const SUN_WARP_REACHES: f64 = 3.0;
 /// (altitude, cosine of the light's zenith angle) <-> unit coordinates.
 ///
 /// x grows as asinh(k μ_s), y = √(h / top). Night falls the sooner, the larger the planet is against its air: k and the
-/// lowest light follow √(2 top / radius), the angle in radians from the horizon at which the top of the air is seen from
-/// the ground, or lit from below it.
+/// lowest light follow the angle from the horizon at which the top of the air is seen (`Planet::reach_rad`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MultipleScatteringMapping {
     /// Altitude of the atmosphere's top, m.
@@ -26,7 +25,7 @@ pub struct MultipleScatteringMapping {
 impl MultipleScatteringMapping {
     /// That of a planet.
     pub fn new(planet: &Planet) -> Self {
-        let reach = (2.0 * planet.atmosphere_height_m / planet.radius_m).sqrt();
+        let reach = planet.reach_rad();
         Self {
             top_m: planet.atmosphere_height_m,
             lowest_mu_s: -(LOWEST_MU_S_REACHES * reach).min(1.0),

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use bytemuck::{Pod, Zeroable};
 use welkin_lut::quadrature::gauss_legendre;
 
-use crate::plan::{Quadrature, Settings};
+use crate::plan::{Quadrature, Settings, SourceGrid};
 
 /// WGSL `GaussNode`.
 #[repr(C)]
@@ -60,8 +60,7 @@ pub fn cosine_nodes(settings: &Settings) -> Vec<GaussNodeBlock> {
 }
 
 /// Nodes of the three parts of the source function's sphere and of its azimuths, one after the other.
-pub fn grid_nodes(settings: &Settings) -> Vec<GaussNodeBlock> {
-    let grid = settings.source_grid;
+pub fn grid_nodes(grid: SourceGrid) -> Vec<GaussNodeBlock> {
     [grid.ground, grid.low, grid.high, grid.azimuths].into_iter().flat_map(fejer).collect()
 }
 
