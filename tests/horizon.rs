@@ -11,6 +11,7 @@ use paths::scene;
 use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{Outputs, Quality, Settings};
 use welkin::probe::{Orders, Ray, RayRadiance};
+use welkin::reference::{self, Effort};
 use welkin::renderer::Renderer;
 use welkin_lut::mapping::SkyViewMapping;
 
@@ -192,5 +193,38 @@ fn one_step_of_a_float_around_the_top_of_the_air_changes_nothing() {
         let higher = probe(renderer, top_m + 1e3, 0.7, &views);
         let at_top = probe(renderer, top_m, 0.7, &views);
         assert!(difference(&higher[2], &at_top[2]) > 1e-3);
+    });
+}
+
+#[test]
+fn the_limb_is_right_where_the_edge_of_the_planets_shadow_runs_across_it() {
+    // From just above the air, 6 degrees after sunset, light that grazed the ground is nearly out: it falls by half within a
+    // degree of azimuth, and rays at 99.4 degrees from the zenith begin to meet the shadow.
+    let scene = scene(-6.0, 105_600.0);
+    let rays: Vec<Ray> = [56.8, 78.5]
+        .into_iter()
+        .flat_map(|azimuth_deg: f64| (0..10).map(move |i| (azimuth_deg, 98.5 + 0.12 * f64::from(i))))
+        .map(|(azimuth_deg, zenith_deg)| Ray {
+            altitude_m: 105_600.0,
+            view_zenith_rad: zenith_deg.to_radians(),
+            view_azimuth_rad: azimuth_deg.to_radians(),
+            sun_zenith_rad: 96_f64.to_radians(),
+            sun_azimuth_rad: 0.0,
+            distance_m: f64::INFINITY,
+        })
+        .collect();
+    let truth = reference::probe(&scene, &rays, Orders::Single, Effort::Walks(1), 0);
+    with_renderer(|renderer| {
+        let mut worst = |settings: Settings| {
+            let found = renderer.probe(&scene, settings, &rays, Orders::Single).unwrap();
+            let pairs = found.iter().zip(&truth).flat_map(|(found, truth)| found.radiance.into_iter().zip(truth.radiance));
+            pairs.map(|(found, truth)| (found / truth - 1.0).abs()).fold(0.0, f64::max)
+        };
+        let medium = Settings::of(Quality::Medium);
+        let found = worst(medium);
+        assert!(found < 0.04, "{found}");
+        let [columns, rows] = medium.sky_view_size;
+        let coarse = worst(Settings { sky_view_size: [columns / 2, rows], ..medium });
+        assert!(coarse > 0.04, "half as many columns, as by day, are too few: {coarse}");
     });
 }

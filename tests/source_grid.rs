@@ -73,7 +73,7 @@ fn every_direction_lies_where_it_is_read_and_all_of_them_fill_the_sphere() {
         let sources = Sources::embedded().with("directions_found.wgsl", PASS);
         let shader = Shader::from_sources(&sources, "directions_found", &definitions(grid)).unwrap();
         let pipeline = gpu.pipeline(&shader).unwrap();
-        let nodes = grid_nodes(&settings);
+        let nodes = grid_nodes(grid);
         // Horizons from the ground and from 100 km; light at the zenith, at half height, at the horizon and below it.
         for place in [[0.0, 1.0], [0.0, 0.5], [0.0, 0.0], [-0.174, 0.02], [-0.174, -0.3]] {
             let found = gpu.image("found", ImageShape::D2(grid.count(), 1), ImageFormat::Rgba32Float).unwrap();

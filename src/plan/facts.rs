@@ -13,11 +13,6 @@ use super::{CloudScattering, OutOfView, PlanError, Sequence, Settings, Skipping,
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, GroupColour, Light, PointLight, Scene, WavelengthGroup};
 
-/// How far the Earth's air of 100 km reaches beyond the horizon, rad.
-const EARTHS_REACH_RAD: f64 = 0.177;
-/// As many times more directions in the low sky as the largest planet gets.
-const MOST_LOW_DIRECTIONS: f64 = 2.0;
-
 /// What is to come out of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Outputs {
@@ -325,12 +320,9 @@ impl<'a> Facts<'a> {
         if self.treatment == Treatment::IsotropicSeries { 1 } else { self.settings.degree_count }
     }
 
-    /// Directions in which the source function is tabulated. Twilight glows close to the horizon, the closer the larger the
-    /// planet is against its air; nodes lie at distances from the horizon that go as one over the square of their number.
+    /// Directions in which the source function is tabulated.
     pub fn source_grid(&self) -> SourceGrid {
-        let grid = self.settings.source_grid;
-        let more = (EARTHS_REACH_RAD / self.scene.planet.reach_rad()).sqrt().clamp(1.0, MOST_LOW_DIRECTIONS);
-        SourceGrid { low: (f64::from(grid.low) * more).round() as u32, ..grid }
+        self.settings.source_grid.on(&self.scene.planet)
     }
 
     /// Coefficients (l, m), m ≥ 0, of the field.
