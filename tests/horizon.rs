@@ -217,7 +217,8 @@ fn the_limb_is_right_where_the_edge_of_the_planets_shadow_runs_across_it() {
     with_renderer(|renderer| {
         let mut worst = |settings: Settings| {
             let found = renderer.probe(&scene, settings, &rays, Orders::Single).unwrap();
-            let pairs = found.iter().zip(&truth).flat_map(|(found, truth)| found.radiance.into_iter().zip(truth.radiance));
+            let pairs =
+                found.iter().zip(&truth).flat_map(|(found, truth)| found.radiance.into_iter().zip(truth.radiance));
             pairs.map(|(found, truth)| (found / truth - 1.0).abs()).fold(0.0, f64::max)
         };
         let medium = Settings::of(Quality::Medium);

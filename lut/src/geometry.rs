@@ -102,6 +102,13 @@ pub fn shadow_interval_m(radius_m: f64, altitude_m: f64, [mu, mu_s, nu]: [f64; 3
     [start.max(0.0), end.min(length_m)]
 }
 
+/// Distance at which a ray passes closest to the axis of the planet's shadow, m, in [0, length]; 0 on the side of the light.
+pub fn closest_to_shadow_m(radius_m: f64, altitude_m: f64, [mu, mu_s, nu]: [f64; 3], length_m: f64) -> f64 {
+    let r = radius_m + altitude_m;
+    let closest_m = r * (nu * mu_s - mu) / (1.0 - nu * nu).max(1e-12);
+    if r * mu_s + closest_m * nu < 0.0 { closest_m.clamp(0.0, length_m) } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -134,5 +141,21 @@ mod tests {
             let distance = distance_to_shell_from_above(EARTH_M, altitude, -1.0, 0.0).unwrap();
             assert!((distance - altitude).abs() <= 1e-12 * (EARTH_M + altitude), "{distance} from {altitude}");
         }
+    }
+
+    #[test]
+    fn rays_that_miss_the_shadow_are_farther_from_its_axis_before_and_after_they_are_closest() {
+        let (altitude_m, [mu, mu_s, nu], length_m) = (105_600.0, [-0.16, -0.1045, 0.2], 2e6);
+        assert_eq!(shadow_interval_m(EARTH_M, altitude_m, [mu, mu_s, nu], length_m), [1.0, 0.0]);
+        let closest_m = closest_to_shadow_m(EARTH_M, altitude_m, [mu, mu_s, nu], length_m);
+        // Squared distance from the axis: r² less the part along the light.
+        let axis_m2 = |t: f64| {
+            let r = EARTH_M + altitude_m;
+            r * r + t * t + 2.0 * r * t * mu - (r * mu_s + t * nu).powi(2)
+        };
+        assert!(closest_m > 0.0 && closest_m < length_m);
+        assert!([-1e4, 1e4].iter().all(|way_m| axis_m2(closest_m + way_m) > axis_m2(closest_m)));
+        // Towards the light nothing is behind the planet.
+        assert_eq!(closest_to_shadow_m(EARTH_M, 0.0, [0.0, 0.5, 0.8], length_m), 0.0);
     }
 }

@@ -1,9 +1,9 @@
 #define_import_path welkin::march
 // The quadrature along a view ray, shared by every pass that integrates through the air.
 //
-// A ray is cut where its integrand has a kink or a jump: at its tangent point, where it crosses the planet's shadow, and
-// at the bounds of layers. Each of the legs, at most four where there is no layer, is integrated by Gauss-Legendre in v,
-// where distance grows with v² from the leg's low end, so that nodes crowd where the air is dense. Optical depth between
+// A ray is cut where its integrand has a kink or a jump: at its tangent point, where it crosses the planet's shadow or
+// comes closest to it, and at the bounds of layers. Each of the legs, at most four where there is no layer, is integrated
+// by Gauss-Legendre in v, where distance grows with v² from the leg's low end, so that nodes crowd where the air is dense. Optical depth between
 // nodes is Simpson's rule in v, which reuses the extinction at both nodes; that of tents, which have kinks, is in closed
 // form (welkin::tent). Measured in docs/accuracy.md.
 //
@@ -52,7 +52,7 @@ struct AirRay {
     nu: f32,
     length_m: f32,
     tangent_m: f32,
-    // Where the planet hides the light; start >= end when nowhere.
+    // Where the planet hides the light; start >= end when nowhere, start = end where the ray comes closest to the shadow.
     shadow_m: vec2<f32>,
     // Ends of the legs in ascending order, those at bounds of layers left out.
     leg_ends_m: vec4<f32>,

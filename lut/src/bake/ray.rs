@@ -1,10 +1,12 @@
 //! The quadrature along a ray through the air: as in the shaders' `march.wgsl`, in f64.
 //!
-//! A ray is cut at its tangent point and where it crosses the planet's shadow. Each leg is Gauss-Legendre in v, where
+//! A ray is cut at its tangent point and where it crosses the planet's shadow, or comes closest to it. Each leg is Gauss-Legendre in v, where
 //! distance grows with v² from the leg's low end; optical depth between nodes is Simpson's rule in v, that of tents in
 //! closed form.
 
-use crate::geometry::{altitude_along, distance_to_shell_from_below, grazing_distance_m, shadow_interval_m};
+use crate::geometry::{
+    altitude_along, closest_to_shadow_m, distance_to_shell_from_below, grazing_distance_m, shadow_interval_m,
+};
 use crate::quadrature::GaussNode;
 use crate::{BAND_COUNT, Bands};
 
@@ -72,10 +74,13 @@ impl AirRay {
         Self::new(air, altitude_m, [mu, mu_s, nu], hits_ground)
     }
 
-    /// The same ray, cut also where it enters and leaves the planet's shadow.
+    /// The same ray, cut also where it enters and leaves the planet's shadow, or where it comes closest.
     pub(super) fn cut_at_shadow(self, air: &Air) -> Self {
-        let directions = [self.mu, self.mu_s, self.nu];
-        let shadow_m = shadow_interval_m(air.planet().radius_m, self.altitude_m, directions, self.length_m);
+        let (radius_m, directions) = (air.planet().radius_m, [self.mu, self.mu_s, self.nu]);
+        let mut shadow_m = shadow_interval_m(radius_m, self.altitude_m, directions, self.length_m);
+        if shadow_m[0] >= shadow_m[1] {
+            shadow_m = [closest_to_shadow_m(radius_m, self.altitude_m, directions, self.length_m); 2];
+        }
         Self { shadow_m, ..self }
     }
 
@@ -86,7 +91,7 @@ impl AirRay {
     }
 
     fn ends_m(&self) -> [f64; 5] {
-        let [enter, leave] = if self.shadow_m[0] < self.shadow_m[1] { self.shadow_m } else { [0.0; 2] };
+        let [enter, leave] = if self.shadow_m[0] <= self.shadow_m[1] { self.shadow_m } else { [0.0; 2] };
         let mut ends = [self.tangent_m.clamp(0.0, self.length_m), enter, leave];
         ends.sort_by(f64::total_cmp);
         [0.0, ends[0], ends[1], ends[2], self.length_m]
