@@ -79,6 +79,8 @@ fn nothing_pops_as_the_sun_sets_and_twilight_only_darkens() {
             (2.0, -1.0..1.0, 0.9),
             (2.0, -17.9..-16.0, 0.9),
             (400_000.0, 53.2..55.2, 0.01),
+            // The edge of the planet's shadow comes into view.
+            (400_000.0, 18.9..20.7, 0.01),
             (400_000.0, -1.0..1.0, 0.9),
         ];
         for (altitude_m, range, control) in stretches {

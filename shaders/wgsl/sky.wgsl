@@ -13,6 +13,7 @@
 
 #import welkin::atmosphere::{atmosphere, phase_per_sr, PI, SCATTERER_COUNT}
 #import welkin::disc::{beam_count, beam_mu_s, beam_weight, direct_irradiance_of_disc}
+#import welkin::geometry::horizon_mu
 #import welkin::mapping
 #import welkin::march::{air_length_m, ground_mu_s, view_ray}
 #import welkin::observer::{light_mu_s, observer}
@@ -25,6 +26,9 @@
 #ifdef EMISSION
 @group(0) @binding(15) var view_emission_table: texture_2d<f32>;
 #endif
+
+// One over the part of the horizon's depth in which it comes in.
+const EDGE_FADE: f32 = 4.0;
 
 const MULTIPLE_LAYER: u32 = 0u;
 const SINGLE_LAYER: u32 = 1u;
@@ -79,10 +83,18 @@ fn view_transmittance(direction: SkyDirection) -> vec3<f32> {
     return exp(-view_optical_depth(direction));
 }
 
-// ln of how much the air along the ray lets through to the observer on average, if it shone evenly: of (1 - exp(-tau)) / tau.
-fn ln_mean_transmittance(direction: SkyDirection) -> vec3<f32> {
+// How much the air's mean transmittance is left out for a light, in [0, 1]: gradually, as the edge of its shadow comes into
+// view.
+fn edge_strength(light: u32) -> f32 {
+    let depth = -horizon_mu(atmosphere.radius_m, observer.altitude_m);
+    return clamp(EDGE_FADE * (1.0 - abs(light_mu_s(light)) / max(depth, 1e-9)), 0.0, 1.0);
+}
+
+// ln of how much the air along the ray lets through to the observer on average, if it shone evenly: of (1 - exp(-tau)) / tau,
+// as far as it is left out.
+fn ln_mean_transmittance(light: u32, direction: SkyDirection) -> vec3<f32> {
     let tau = max(view_optical_depth(direction), vec3<f32>(1e-20));
-    return select(log((1.0 - exp(-tau)) / tau), -0.5 * tau, tau < vec3<f32>(1e-3));
+    return edge_strength(light) * select(log((1.0 - exp(-tau)) / tau), -0.5 * tau, tau < vec3<f32>(1e-3));
 }
 
 // One layer of the sky view, over the length of air, 1/m: multiply scattered radiance, or a scatterer's light without
@@ -95,7 +107,7 @@ fn sky_view(light: u32, layer: u32, direction: SkyDirection) -> vec3<f32> {
     let first = layer_of(light, direction.below_horizon);
     var ln_scale = vec3<f32>(-LN_SCALE);
 #ifdef EDGE_OF_SHADOW
-    ln_scale += ln_mean_transmittance(direction);
+    ln_scale += ln_mean_transmittance(light, direction);
 #endif
 #ifdef SHADE
     if layer >= SINGLE_LAYER {

@@ -80,7 +80,8 @@ fn put(texel: vec2<u32>, view: mapping::ZenithAzimuth, half: Half, integrals: In
     let first = layer_of(half.light, half.below_horizon);
     var ln_scale = vec3<f32>(LN_SCALE);
 #ifdef EDGE_OF_SHADOW
-    ln_scale -= ln_mean_transmittance(SkyDirection(view.zenith_rad, view.azimuth_rad, 0.0, half.below_horizon));
+    let direction = SkyDirection(view.zenith_rad, view.azimuth_rad, 0.0, half.below_horizon);
+    ln_scale -= ln_mean_transmittance(half.light, direction);
 #endif
     let multiple = logarithm(sum.multiple * per_m) + ln_scale;
     textureStore(sky_view_image, texel, first + MULTIPLE_LAYER, vec4<f32>(multiple, 0.0));

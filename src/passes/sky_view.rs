@@ -43,7 +43,9 @@ pub(super) fn elevations(facts: &Facts) -> impl Iterator<Item = (f64, f64)> {
 /// Azimuths and elevations of each half.
 fn size(facts: &Facts) -> [u32; 2] {
     let [columns, rows] = facts.settings.sky_view_size;
-    if facts.sees_edge_of_shadow() { [COLUMNS_AT_EDGE_OF_SHADOW * columns, rows] } else { [columns, rows] }
+    // What columns there are stay where they are: nothing pops.
+    let between = if facts.sees_edge_of_shadow() { COLUMNS_AT_EDGE_OF_SHADOW - 1 } else { 0 };
+    [columns + between * (columns - 1), rows]
 }
 
 fn shape(facts: &Facts) -> ImageShape {
