@@ -1,7 +1,7 @@
-//! Compiles the exported shaders with the `shaderc` crate: all GLSL, and HLSL as far as its front end takes it.
+//! Compiles the exported shaders with the `shaderc` crate: GLSL and HLSL.
 //!
 //! `cargo run --release --manifest-path benches/shaderc/Cargo.toml`, which needs cmake and ninja. The exit code is 1 when
-//! GLSL is refused, or HLSL other than what docs/tables.md says.
+//! one of them is refused.
 
 use shaderc::{CompileOptions, Compiler, EnvVersion, OptimizationLevel, ShaderKind, SourceLanguage, TargetEnv};
 use welkin_shaders::{Definition, Definitions, Language, Sources};
