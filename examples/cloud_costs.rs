@@ -14,8 +14,8 @@
 //!   and nothing skipped, over a followed frame.
 //!
 //! With `--beside-brute-force` only followed frames and brute force. With a picture of the scene that the path tracer has made,
-//! also how far both are from it: the root mean square of ln(ratio) over all pixels in green, its noise taken out, of a frame
-//! that ends a turn of the camera.
+//! also how far both are from it: the root mean square of ln(ratio) over all pixels in green, of a frame that ends a turn of the
+//! camera. The truth's own noise is in both.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -121,14 +121,12 @@ fn of_light(name: &str) -> bool {
 /// How far a frame is from the path tracer's.
 fn rms_of_ln(found: &Frame, truth: &Frame) -> f64 {
     const GREEN: usize = 1;
-    let errors = truth.standard_error.as_ref();
     let pixel = |i: usize| {
-        let (a, b) = (f64::from(found.radiance[i][GREEN]), f64::from(truth.radiance[i][GREEN]));
-        let noise = errors.map_or(0.0, |errors| f64::from(errors[i][GREEN])) / b;
-        (a / b).ln().powi(2) - noise * noise
+        let ratio = found.radiance[i][GREEN].max(1e-9) / truth.radiance[i][GREEN].max(1e-9);
+        f64::from(ratio).ln().powi(2)
     };
     let sum: f64 = (0..truth.radiance.len()).map(pixel).sum();
-    (sum / truth.radiance.len() as f64).max(0.0).sqrt()
+    (sum / truth.radiance.len() as f64).sqrt()
 }
 
 /// The error of the last of some frames in which the camera turns to where the truth was seen from.
@@ -161,10 +159,12 @@ fn beside_brute_force(arguments: &Arguments, scene: &Scene, qualities: &[Quality
             [Way::new(quality, ShaderSources::embedded(), whole, true), Way::new(quality, brute_force(), brute, false)];
         let mut small = scene.clone();
         (small.camera.width, small.camera.height) = (64, 36);
-        // Pipelines, noise and light, without the long wait for brute force at full size.
+        // Pipelines, noise and light, without the long wait for brute force at full size. Frames that follow have pipelines of
+        // their own.
         ways[0].render(scene);
+        ways[0].render(&turned(scene, 1));
         ways[1].render(&small);
-        for round in 1..=arguments.rounds {
+        for round in 2..=arguments.rounds + 1 {
             let frame = turned(scene, round);
             for way in &mut ways {
                 let rendered = way.render(&frame);
