@@ -49,6 +49,11 @@ fn views(scene: &Scene) -> Vec<(DVec3, DVec3)> {
     (0..camera.width * camera.height).map(|i| (eye, at(i))).collect()
 }
 
+/// Whether the horizon may run through the pixel: there the picture shows what stands before both of its sides, and not the middle alone.
+fn is_on_horizon(scene: &Scene, view: DVec3) -> bool {
+    view.z.abs() < scene.camera.vertical_field_of_view_rad / f64::from(scene.camera.height)
+}
+
 const FOG: &str = "[[fog]]\nextinction_per_m = [0.004, 0.006, 0.009]\nprofile.exponential.scale_height_m = 60\n";
 const MIST: &str = "[[volumes]]\nname = \"mist\"\nshape = \"box\"\ncentre_m = [4, 60, 8]\nsize_m = [30, 20, 25]\nturn_deg = 30\n\
     absorption_per_m = [0.02, 0.05, 0.1]\nemission_per_m = [0.1, 0.2, 0.3]\n";
@@ -63,6 +68,9 @@ fn fog_and_volumes_without_light_let_through_what_beers_law_says() {
     let (mut hidden, mut worst, mut of_another) = (0, 0.0_f64, 0.0_f64);
     let denser = World::from_scene(&dark(&format!("{FOG}{MIST}{}", BALL.replace("0.03", "0.031"))));
     for (pixel, (eye, view)) in views(&scene).into_iter().enumerate() {
+        if is_on_horizon(&scene, view) {
+            continue;
+        }
         let exact = transport::transmittance(&world, eye, view)[1];
         let found = f64::from(frame.transmittance[pixel][1]);
         worst = worst.max((found - exact).abs());
@@ -81,6 +89,9 @@ fn a_glowing_volume_alone_shows_its_source_times_its_opacity() {
     let frame = &render(&[(scene.clone(), low())])[0].frame;
     let mut seen = 0;
     for (pixel, (eye, view)) in views(&scene).into_iter().enumerate() {
+        if is_on_horizon(&scene, view) {
+            continue;
+        }
         let transmittance = transport::transmittance(&World::from_scene(&scene), eye, view);
         for (band, source) in [0.1 / 0.02, 0.2 / 0.05, 0.3 / 0.1].into_iter().enumerate() {
             let exact = (1.0 - transmittance[band]) * source;
