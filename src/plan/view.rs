@@ -2,8 +2,6 @@
 //!
 //! The camera stands on the axis of the planet's shells, so that the altitudes along a ray follow from its zenith angle.
 
-use std::f64::consts::FRAC_PI_2;
-
 use welkin_lut::{Planet, geometry};
 
 use super::{Facts, Surface};
@@ -16,8 +14,6 @@ pub struct SeenAltitudes {
     pub lowest_m: f64,
     /// No ray comes higher, m; infinite where one leaves upwards.
     pub highest_m: f64,
-    /// Cosine of the zenith angle of the ray that comes lowest.
-    lowest_mu: f64,
 }
 
 /// What of a scene is out of the picture, and why, in words and numbers.
@@ -85,21 +81,7 @@ impl SeenAltitudes {
             (altitude_m - r * lowest_mu * lowest_mu / (1.0 + (1.0 - lowest_mu * lowest_mu).sqrt())).max(0.0)
         };
         let highest_m = if highest_mu >= horizon_mu { f64::INFINITY } else { altitude_m };
-        Self { lowest_m, highest_m, lowest_mu }
-    }
-
-    /// Angle at the planet's centre between the camera and the farthest air of the picture, rad: there a light stands that
-    /// much lower at most. π where the ray that comes lowest does not leave the air again.
-    fn reach_rad(&self, camera: &Camera, planet: &Planet) -> f64 {
-        let (radius_m, top_m) = (planet.radius_m, planet.atmosphere_height_m);
-        let altitude_m = camera.altitude_m.max(0.0);
-        if altitude_m > top_m || self.lowest_m == 0.0 {
-            return std::f64::consts::PI;
-        }
-        let length_m = geometry::distance_to_shell_from_below(radius_m, altitude_m, self.lowest_mu, top_m);
-        let sine = length_m * (1.0 - self.lowest_mu * self.lowest_mu).max(0.0).sqrt() / (radius_m + top_m);
-        let beyond = radius_m + altitude_m + length_m * self.lowest_mu < 0.0;
-        if beyond { std::f64::consts::PI } else { sine.clamp(0.0, 1.0).asin() }
+        Self { lowest_m, highest_m }
     }
 }
 
@@ -166,7 +148,8 @@ fn mountains_behind_air(facts: &Facts, height_m: f64) -> Option<String> {
         .then(|| format!("the air between the camera and the highest summit has an optical depth of {depth:.1}"))
 }
 
-/// Clouds under all rays, under lights that no cloud can hide from what is seen. Lamps may shine through them.
+/// Clouds under all rays, where nothing is in view that could receive their light: no air, or no light at all. Lit clouds light
+/// the air above them.
 fn clouds_below_view(facts: &Facts, seen: &SeenAltitudes, share: f64) -> Option<String> {
     let top_m = facts.clouds.iter().map(|layer| layer.top_m).max_by(f64::total_cmp)?;
     if seen.lowest_m <= share * top_m || facts.has_local_media() {
@@ -175,12 +158,11 @@ fn clouds_below_view(facts: &Facts, seen: &SeenAltitudes, share: f64) -> Option<
     if facts.out_of_view.air.is_some() {
         return facts.out_of_view.air.clone();
     }
-    let reach_rad = seen.reach_rad(&facts.scene.camera, &facts.scene.planet);
-    let lowest_light_rad = facts.lights.iter().map(|light| light.direction.elevation_rad).fold(FRAC_PI_2, f64::min);
-    (facts.lights.is_empty() || lowest_light_rad > reach_rad).then(|| {
-        let lowest_m = seen.lowest_m;
-        format!("no ray comes below {lowest_m:.0} m, clouds end at {top_m:.0} m, and no light shines from below")
-    })
+    let lowest_m = seen.lowest_m;
+    facts
+        .lights
+        .is_empty()
+        .then(|| format!("no ray comes below {lowest_m:.0} m, clouds end at {top_m:.0} m, and no light shines on them"))
 }
 
 /// Clouds over all rays, where no light shines that they could keep from what is seen.

@@ -169,6 +169,8 @@ pub fn random_view(random: &mut Pcg64Mcg, effect: Option<Effect>) -> Scene {
     scene.camera.vertical_field_of_view_rad = uniform(0.1, 0.9);
     scene.camera.direction.elevation_rad = uniform(-1.2, 1.2);
     scene.camera.altitude_m = match effect {
+        // Clouds light all air above them.
+        Some(Effect::Clouds) => 10_f64.powf(uniform(2.5, 6.5)),
         Some(_) => 10_f64.powf(uniform(2.5, 4.5)),
         None => 10_f64.powf(uniform(4.8, 6.5)),
     };
