@@ -20,7 +20,7 @@
 
 #ifdef WHOLE_CELLS
 const COLUMNS: u32 = CELL;
-// Cells side by side: their pixels lie on few pages of memory, along which a processor fetches ahead of the writes.
+// Cells side by side: their pixels lie on few pages of memory, along which a processor can fetch ahead of the writes.
 const GROUP_SIZE = vec2<u32>(32u, 1u);
 #else
 const COLUMNS: u32 = 1u;
