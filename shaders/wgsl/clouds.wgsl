@@ -11,14 +11,13 @@
 
 #import welkin::atmosphere::atmosphere
 #import welkin::cloud_field::{to_map, CLOUD_LAYER_COUNT}
-#import welkin::cloud_daylight::{cover_at, left_on_ground, straight_left}
 #import welkin::cloud_frame::cloud_frame
 #import welkin::cloud_skip::empty_m
 #import welkin::cloud_source::{phases, PHASE_COUNT}
 #import welkin::cloud_step::{cloud_extinction, from_clouds, is_in_clouds, is_inside, CloudStep}
 #import welkin::media_march::{
-    altitude_m, clear_air, growth_behind, leave_air, next_crossing_m, pass_air, place_in_step, position_m, ray_of, Air, Ray, NEVER_M,
-    OPAQUE,
+    altitude_m, clear_air, growth_behind, leave_air, left_on_surface, next_crossing_m, pass_air, place_in_step, position_m,
+    ray_of, Air, Ray, NEVER_M, OPAQUE,
 }
 
 // Light of the clouds at the observer, and their transmittance.
@@ -133,7 +132,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), t_m, ray.end_m);
         let end = to_map(atmosphere.radius_m, position_m(&ray, ray.end_m));
         let altitude = max(altitude_m(&ray, ray.end_m), 0.0);
-        ground = left_on_ground(straight_left(0u, end, altitude), cover_at(end, altitude), air.clear);
+        ground = left_on_surface(&air, end, altitude);
     } else {
         leave_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), t_m);
     }

@@ -16,8 +16,8 @@
 #import welkin::media_between::{between, next_boundary_m, Between}
 #import welkin::media_ground::{fog_share, ground_lit_by_lamps, volume_share}
 #import welkin::media_march::{
-    altitude_m, clear_air, growth_behind, observer_position, pass_air, place_in_step, position_m, ray_of, Air, Ray, NEVER_M,
-    OPAQUE,
+    altitude_m, clear_air, growth_behind, leave_air, left_on_surface, observer_position, pass_air, place_in_step, position_m,
+    ray_of, Air, Ray, NEVER_M, OPAQUE,
 }
 #import welkin::volume_field::{fog_density, place_of, volumes, Place, FOG_COUNT, VOLUME_COUNT}
 #import welkin::volume_source::{from_lights, mean_through, seen, Piece, Stretch}
@@ -29,12 +29,10 @@
 #endif
 #endif
 #ifdef CLOUDS
-#import welkin::cloud_daylight::{cover_at, left_on_ground, straight_left}
 #import welkin::cloud_field::CLOUD_LAYER_COUNT
 #import welkin::cloud_matter::cloud_matter
 #import welkin::cloud_source::{phases, PHASE_COUNT}
 #import welkin::cloud_step::{cloud_extinction, from_clouds, is_inside, layer_extinction, CloudStep}
-#import welkin::media_march::leave_air
 #endif
 
 // Light of clouds, fog and volumes at the observer, and what they leave of the beam on the surface at the end.
@@ -165,11 +163,7 @@ fn next_step(ray: ptr<function, Ray>, t_m: f32, boundary_m: f32, here: Between, 
 
 // The light that what the ray ends on receives: shares of the beam and of diffuse light in clear air.
 fn ground_share(place: Place, air: ptr<function, Air>) -> vec2<f32> {
-    var share = vec2<f32>(1.0);
-#ifdef CLOUDS
-    let straight = straight_left(0u, place.map, place.altitude_m);
-    share = left_on_ground(straight, cover_at(place.map, place.altitude_m), (*air).clear);
-#endif
+    var share = left_on_surface(air, place.map, place.altitude_m);
     share.x *= volume_share(place);
     return share * fog_share(place, share);
 }
@@ -250,12 +244,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             let lit = ground_lit_by_lamps(surface, ray.pixel, ray.end_m, cluster_of(ray.pixel, slice_of(ray.end_m)));
             sum.radiance += transmittance * exp(-air.depth) * atmosphere.ground_albedo / PI * lit;
         }
-    }
-#ifdef CLOUDS
-    if ray.end_m >= NEVER_M {
+    } else {
         leave_air(&air, &ray, transmittance, t_m);
     }
-#endif
     let behind = transmittance * exp(-air.depth);
     textureStore(media_radiance_image, ray.pixel, vec4<f32>(sum.radiance, ground.x));
     textureStore(media_transmittance_image, ray.pixel, vec4<f32>(transmittance, ground.y));

@@ -10,7 +10,7 @@
 #import welkin::atmosphere::{atmosphere, extinction_at}
 #import welkin::camera::view_direction
 #ifdef CLOUDS
-#import welkin::cloud_daylight::{clear_fluxes, cover_at, diffuse_share, straight_left, ClearFluxes}
+#import welkin::cloud_daylight::{clear_fluxes, cover_at, diffuse_share, left_on_ground, straight_left, ClearFluxes}
 #import welkin::cloud_field::cloud_layers
 #endif
 #import welkin::cloud_field::{to_map, CLOUD_LAYER_COUNT}
@@ -177,10 +177,20 @@ fn pass_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>, 
 #endif
 }
 
+// What clouds leave on a point of a surface: of the first light's flux and of the sky's light.
+fn left_on_surface(air: ptr<function, Air>, map: vec2<f32>, altitude: f32) -> vec2<f32> {
 #ifdef CLOUDS
-// Moves on through the air beyond a distance, out into space: above all clouds, or below none.
+    return left_on_ground(straight_left(0u, map, altitude), cover_at(map, altitude), (*air).clear);
+#else
+    return vec2<f32>(1.0);
+#endif
+}
+
+// Moves on through the air beyond a distance, out into space: above all clouds, or below none. What nothing lights or hides
+// there needs no look.
 fn leave_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>, from_m: f32) {
 #ifdef AIR
+#ifdef CLOUDS
     var at_m = from_m;
     if altitude_m(ray, from_m) > atmosphere.top_m {
         // From space, the air is still ahead or never met.
@@ -199,5 +209,5 @@ fn leave_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>,
     (*air).beam += straight_left(0u, map, altitude) * share;
     (*air).diffuse += diffuse_share(cover_at(map, altitude), (*air).clear) * share;
 #endif
-}
 #endif
+}
