@@ -2,7 +2,7 @@
 
 use super::{Pass, Recording, RenderError, clouds};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint};
+use crate::plan::{Declaration, Facts};
 
 const NAME: &str = "cloud_cover";
 
@@ -13,10 +13,7 @@ pub const PASS: Pass = Pass {
         need: clouds::need,
         reads: &["cloud_light_image"],
         writes: &["cloud_cover_image"],
-        inputs: |facts| {
-            let directions: Vec<_> = facts.lights.iter().map(|light| light.direction).collect();
-            Fingerprint::of(&(directions, facts.scene.planet.radius_m))
-        },
+        inputs: clouds::directions_inputs,
         bytes: |facts| shape(facts).texels() * ImageFormat::Rgba16Float.texel_bytes(),
     },
     record,

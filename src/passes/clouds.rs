@@ -104,6 +104,12 @@ pub(super) fn layers_inputs(facts: &Facts) -> Fingerprint {
     Fingerprint::of(&(&facts.scene.clouds, facts.settings.clouds))
 }
 
+/// What light on the grids depends on besides their field.
+pub(super) fn directions_inputs(facts: &Facts) -> Fingerprint {
+    let directions: Vec<_> = facts.lights.iter().map(|light| light.direction).collect();
+    Fingerprint::of(&(directions, facts.scene.planet.radius_m))
+}
+
 /// The shape of so many fields on the clouds' grids.
 pub(super) fn grid_shape(facts: &Facts, fields: u32) -> ImageShape {
     let settings = &facts.settings.clouds;
