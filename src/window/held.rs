@@ -15,13 +15,14 @@ const HASTE: f64 = 8.0;
 pub struct Held(HashSet<KeyCode>);
 
 impl Held {
-    /// A key went down or up.
+    /// A key went down or up. With Ctrl it is another key, and stays that when Ctrl is let go before it: who saves does
+    /// not fly.
     pub fn change(&mut self, code: KeyCode, down: bool) {
-        if down {
-            self.0.insert(code)
-        } else {
-            self.0.remove(&code)
-        };
+        match down {
+            true if self.control() => {}
+            true => drop(self.0.insert(code)),
+            false => drop(self.0.remove(&code)),
+        }
     }
 
     /// The window has lost the keyboard: who knows what is held now.
@@ -29,9 +30,9 @@ impl Held {
         self.0.clear();
     }
 
-    /// What they ask for; with Ctrl they are other keys.
+    /// What they ask for; nothing while Ctrl is held.
     pub fn motion(&self) -> Motion {
-        if self.either(KeyCode::ControlLeft, KeyCode::ControlRight) {
+        if self.control() {
             return Motion::default();
         }
         let axis =
@@ -44,6 +45,10 @@ impl Held {
         let turn = [axis(KeyCode::ArrowRight, KeyCode::ArrowLeft), axis(KeyCode::ArrowUp, KeyCode::ArrowDown)];
         let haste = if self.either(KeyCode::ShiftLeft, KeyCode::ShiftRight) { HASTE } else { 1.0 };
         Motion { along, turn, haste }
+    }
+
+    fn control(&self) -> bool {
+        self.either(KeyCode::ControlLeft, KeyCode::ControlRight)
     }
 
     fn either(&self, left: KeyCode, right: KeyCode) -> bool {
@@ -66,7 +71,20 @@ mod tests {
         held.change(KeyCode::ControlLeft, true);
         assert!(held.motion().is_still());
         held.change(KeyCode::ControlLeft, false);
+        assert_eq!(held.motion().along, DVec3::Y, "it was held before");
         held.release();
         assert!(held.motion().is_still());
+    }
+
+    #[test]
+    fn ctrl_s_flies_nowhere_whichever_of_its_keys_is_let_go_first() {
+        let mut held = Held::default();
+        held.change(KeyCode::ControlLeft, true);
+        held.change(KeyCode::KeyS, true);
+        held.change(KeyCode::ControlLeft, false);
+        assert!(held.motion().is_still());
+        held.change(KeyCode::KeyS, false);
+        held.change(KeyCode::KeyS, true);
+        assert_eq!(held.motion().along, DVec3::NEG_Y);
     }
 }

@@ -52,7 +52,9 @@ impl Open {
     fn on_key(&mut self, event: &KeyEvent, taken: bool) {
         let PhysicalKey::Code(code) = event.physical_key else { return };
         let down = event.state == ElementState::Pressed;
-        self.held.change(code, down);
+        if !event.repeat {
+            self.held.change(code, down);
+        }
         let focused = self.interface.context().memory(|memory| memory.focused());
         if down
             && code == KeyCode::Escape
