@@ -119,8 +119,13 @@ fn no_air_in_view_of_a_light_that_counts_as_unseen_is_lit() {
 #[test]
 fn an_absent_effect_leaves_no_instruction_and_no_binding() {
     // Each effect with the scene that has it, and the first word of its own files.
-    let cases =
-        [("CLOUDS", "clouds/fair-cumulus", "cloud"), ("SURFACE", "hills", "aerial"), ("SPHERE", "moonlight", "-")];
+    let cases = [
+        ("CLOUDS", "clouds/fair-cumulus", "cloud"),
+        ("LOCAL_MEDIA", "fog/valley-morning", "volume"),
+        ("SURFACE", "hills", "aerial"),
+        ("EMISSION", "moonlight", "emission"),
+        ("SPHERE", "moonlight", "-"),
+    ];
     let noon = scene("noon");
     for (flag, with, prefix) in cases {
         let of = |scene: &Scene| {

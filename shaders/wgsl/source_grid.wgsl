@@ -8,7 +8,8 @@
 //
 // The table is one picture of tiles: each tile has all mu_s (x) and altitudes (y) of one direction; tiles stand in a row
 // by azimuth, and rows of tiles follow each other by zenith angle, nadir first. One row more holds the radiance field's
-// moments in its first tiles: ln of its irradiance from above, ln of its mean, and I_lm / I_00 up to degree 2.
+// moments in its first tiles, and is as long as they need: ln of its irradiance from above, ln of its mean, and I_lm / I_00 up
+// to degree 2.
 //
 // Definitions: GRID_GROUND_COUNT, GRID_LOW_COUNT, GRID_HIGH_COUNT (cosines in each part), GRID_AZIMUTH_COUNT;
 // GRID_MU_S_COUNT, GRID_ALTITUDE_COUNT (texels of a tile)

@@ -19,10 +19,10 @@ pub const PASS: Pass = Pass {
     record,
 };
 
-/// The table's shape: tiles by azimuth and zenith angle, and one row more for irradiance; a layer for each profile.
+/// The table's shape: tiles by azimuth and zenith angle, and one row more for moments; a layer for each profile.
 pub(super) fn shape(facts: &Facts) -> ImageShape {
-    let ([width, height], grid) = (facts.settings.source_size, facts.source_grid());
-    ImageShape::D2Array(width * grid.azimuths, height * (grid.cosines() + 1), facts.profile_group_count())
+    let ([width, height], [columns, rows]) = (facts.settings.source_size, facts.source_grid().tiles());
+    ImageShape::D2Array(width * columns, height * rows, facts.profile_group_count())
 }
 
 /// One workgroup per texel of a tile.

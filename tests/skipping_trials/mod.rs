@@ -283,8 +283,12 @@ fn random_thin_air(random: &mut Pcg64Mcg) -> Scene {
     scene
 }
 
-/// Of a pixel and a band, relative.
+/// Of a pixel and a band, relative; infinite where light is negative, which no two frames may agree on.
 pub fn largest_difference(all: &Frame, some: &Frame) -> f64 {
     let pixels = all.radiance.as_flattened().iter().zip(some.radiance.as_flattened());
-    pixels.map(|(all, some)| f64::from((all - some).abs()) / (f64::from(*all) + DARKNESS)).fold(0.0, f64::max)
+    let difference = |(all, some): (&f32, &f32)| match all.min(*some) {
+        least if least >= 0.0 => f64::from((all - some).abs()) / (f64::from(*all) + DARKNESS),
+        _ => f64::INFINITY,
+    };
+    pixels.map(difference).fold(0.0, f64::max)
 }
