@@ -1,6 +1,6 @@
 //! Whether anything pops on a camera path from -10 m to 1000 km and on sun paths from 90 to -18 degrees. Prints Markdown.
 //!
-//! `cargo run --release --example continuity [-- [--worst] [--steps N] [QUALITY...]]`
+//! `cargo run --release --example continuity [-- [--worst] [--steps N] [--path N] [QUALITY...]]`; paths are counted from 1.
 
 #[path = "../tests/continuity/mod.rs"]
 mod continuity;
@@ -47,6 +47,7 @@ fn main() {
     let show_worst = words.iter().any(|word| word == "--worst");
     let after = |option: &str| words.iter().position(|word| word == option).and_then(|i| words.get(i + 1));
     let steps: usize = after("--steps").map_or(1000, |word| word.parse().expect("--steps takes a number"));
+    let only: Option<usize> = after("--path").map(|word| word.parse().expect("--path takes a number"));
     let qualities: Vec<Quality> = words.iter().filter_map(|word| word.parse().ok()).collect();
     let qualities = if qualities.is_empty() { Quality::ALL.to_vec() } else { qualities };
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
@@ -56,7 +57,8 @@ fn main() {
         "| path | quality | largest step / its neighbours' | steps above 4 | brightens by at most % | control | s |"
     );
     println!("|---|---|---|---|---|---|---|---|");
-    for walk in walks(steps) {
+    let chosen = |(index, _): &(usize, Walk)| only.is_none_or(|number| *index + 1 == number);
+    for (_, walk) in walks(steps).into_iter().enumerate().filter(chosen) {
         for &quality in &qualities {
             let started = Instant::now();
             let seen = pictures(&mut renderer, Settings::of(quality), &walk.scene, &walk.positions, walk.change);

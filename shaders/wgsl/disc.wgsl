@@ -17,6 +17,9 @@ const BEAM_COUNT: u32 = 3u;
 const BEAM_COUNT: u32 = 1u;
 #endif
 
+// The highest of several beams.
+const LAST_BEAM: u32 = 2u;
+
 // Beams that stand for a light.
 fn beam_count(light: u32) -> u32 {
 #ifdef DISC
@@ -35,7 +38,7 @@ fn beam_height(light: u32) -> f32 {
 // Cosine of the zenith angle of a beam where that of the disc's centre is mu_s.
 fn beam_mu_s(light: u32, beam: u32, mu_s: f32) -> f32 {
 #ifdef DISC
-    let side = select(select(-1.0, 1.0, beam == 2u), 0.0, beam == 0u);
+    let side = select(select(-1.0, 1.0, beam == LAST_BEAM), 0.0, beam == 0u);
     let offset_rad = side * beam_height(light) * observer.lights[light].averaged_radius_rad;
     return clamp(mu_s * cos(offset_rad) + sqrt(max(1.0 - mu_s * mu_s, 0.0)) * sin(offset_rad), -1.0, 1.0);
 #else

@@ -17,7 +17,7 @@
 #import welkin::mapping
 #import welkin::march::{air_length_m, ground_mu_s, view_ray}
 #import welkin::observer::{light_mu_s, observer}
-#import welkin::shade::ln_lit_share
+#import welkin::shade::{ln_lit_share, View}
 #import welkin::tables::{diffuse_ground_irradiance, sample_exactly, table_sampler}
 
 @group(0) @binding(6) var multiple_scattering_table: texture_2d_array<f32>;
@@ -111,10 +111,8 @@ fn sky_view(light: u32, layer: u32, direction: SkyDirection) -> vec3<f32> {
 #endif
 #ifdef SHADE
     if layer >= SINGLE_LAYER {
-        let ray = view_ray(
-            observer.altitude_m, cos(direction.zenith_rad), light_mu_s(light), direction.nu, direction.below_horizon
-        );
-        ln_scale += vec3<f32>(ln_lit_share(light, ray, layer - SINGLE_LAYER));
+        let view = View(observer.altitude_m, direction.zenith_rad, direction.azimuth_rad, direction.below_horizon);
+        ln_scale += ln_lit_share(light, view, layer - SINGLE_LAYER);
     }
 #endif
     return exp(textureSampleLevel(sky_view_table, table_sampler, uv, first + layer, 0.0).rgb + ln_scale);

@@ -12,14 +12,15 @@
 #import welkin::mapping
 #import welkin::march::{air_length_m, cut_at_shadow, is_cut_by_shadow, table_altitude_m, view_ray, AirRay}
 #import welkin::observer::{light_mu_s, observer}
-#import welkin::shade::ln_lit_share
+#import welkin::shade::{least_single, ln_lit_share, View}
 #import welkin::sky::{
-    layer_of, ln_mean_transmittance, LN_SCALE, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER, SkyDirection
+    layer_of, ln_mean_transmittance, LN_SCALE, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER, SkyDirection,
+    view_optical_depth
 }
 #ifdef FANS
 #import welkin::view_integrals::{integrate_fan, FAN_COUNT}
 #endif
-#import welkin::view_integrals::{integrate, logarithm, Integrals, DARK}
+#import welkin::view_integrals::{integrate, logarithm, Integrals}
 
 #ifdef HALF_TABLES
 @group(0) @binding(8) var sky_view_image: texture_storage_2d_array<rgba16float, write>;
@@ -85,13 +86,13 @@ fn put(texel: vec2<u32>, view: mapping::ZenithAzimuth, half: Half, integrals: In
 #endif
     let multiple = logarithm(sum.multiple * per_m) + ln_scale;
     textureStore(sky_view_image, texel, first + MULTIPLE_LAYER, vec4<f32>(multiple, 0.0));
-    let mu_s = light_mu_s(half.light);
-    let to_middle = view_ray(half.altitude_m, mu, mu_s, nu_of(view, mu_s), half.below_horizon);
+    let seen = View(half.altitude_m, view.zenith_rad, view.azimuth_rad, half.below_horizon);
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
-        // Where all is dark the share says nothing.
-        let is_lit = sum.single[c] * per_m > vec3<f32>(DARK);
-        let share = select(vec3<f32>(0.0), vec3<f32>(ln_lit_share(half.light, to_middle, c)), is_lit);
-        let single = logarithm(sum.single[c] * per_m) + ln_scale - share;
+#ifdef SHADE
+        let tau = view_optical_depth(SkyDirection(view.zenith_rad, view.azimuth_rad, 0.0, half.below_horizon));
+        sum.single[c] = max(sum.single[c], least_single(half.light, seen, c, tau));
+#endif
+        let single = logarithm(sum.single[c] * per_m) + ln_scale - ln_lit_share(half.light, seen, c);
         textureStore(sky_view_image, texel, first + SINGLE_LAYER + c, vec4<f32>(single, 0.0));
     }
 }
