@@ -230,3 +230,38 @@ fn the_limb_is_right_where_the_edge_of_the_planets_shadow_runs_across_it() {
         assert!(coarse > 0.04, "half as many columns, as by day, are too few: {coarse}");
     });
 }
+
+#[test]
+fn light_that_barely_clears_the_planets_shadow_is_right_to_a_tenth_of_a_suns_width() {
+    // Away from a sun 4 degrees down rays leave the shadow within the topmost 25 km of the air, and the next row of the table
+    // lies in it to the end: between the two light falls to nothing.
+    let views = [84.3, 84.4, 84.45, 84.5].map(|zenith_deg: f64| [zenith_deg.to_radians(), 178.5_f64.to_radians()]);
+    let rays = |sun_deg: f64| {
+        views.map(|[view_zenith_rad, view_azimuth_rad]| Ray {
+            altitude_m: 2.0,
+            view_zenith_rad,
+            view_azimuth_rad,
+            sun_zenith_rad: sun_deg.to_radians(),
+            sun_azimuth_rad: 0.0,
+            distance_m: f64::INFINITY,
+        })
+    };
+    let scene = scene(-4.0, 2.0);
+    let truth = |sun_deg| reference::probe(&scene, &rays(sun_deg), Orders::Single, Effort::Walks(1), 0);
+    let (sooner, later) = (truth(93.95), truth(94.05));
+    let lies_between = |found: &[RayRadiance]| {
+        let all = found.iter().zip(&sooner).zip(&later);
+        all.flat_map(|((found, sooner), later)| (0..3).map(move |band| (found, sooner, later, band))).all(
+            |(found, sooner, later, band)| {
+                later.radiance[band] < found.radiance[band] && found.radiance[band] < sooner.radiance[band]
+            },
+        )
+    };
+    with_renderer(|renderer| {
+        let mut seen =
+            |sun_deg| renderer.probe(&scene, Settings::of(Quality::Medium), &rays(sun_deg), Orders::Single).unwrap();
+        assert!(lies_between(&seen(94.0)));
+        // Negative control: a sun a fifth of its width lower.
+        assert!(!lies_between(&seen(94.1)));
+    });
+}
