@@ -10,7 +10,10 @@
 // the whole of p. The sum is then divided by what it counts: a mean over directions is never larger than all of them.
 
 #import welkin::atmosphere::{atmosphere, phase_per_sr, LOBE_COUNT, PI, PROFILE_GROUP_COUNT, SCATTERER_COUNT}
-#import welkin::source_grid::{direction_of, DIRECTION_COUNT}
+#import welkin::loops::counted
+#import welkin::source_grid::{
+    direction_of, moment_texel, texel_of, DIRECTION_COUNT, IRRADIANCE_TILE, MEAN_TILE
+}
 #import welkin::spherical_harmonics::harmonics
 
 // Radiance seen along each direction of the grid, filled by all invocations before a barrier.
@@ -39,7 +42,7 @@ fn products(direction: vec3<f32>) -> array<f32, MOMENT_COUNT> {
 fn keep_moment(index: u32) {
     var of_field = vec3<f32>(0.0);
     var of_directions = 0.0;
-    for (var i = 0u; i < DIRECTION_COUNT; i++) {
+    for (var i = 0u; i < counted(DIRECTION_COUNT); i++) {
         var product = products(directions[i].xyz);
         of_field += directions[i].w * product[index] * field[i];
         of_directions += directions[i].w * product[index];
@@ -114,7 +117,7 @@ fn source_function(index: u32) -> array<vec3<f32>, PROFILE_GROUP_COUNT> {
 // The field's irradiance on a horizontal plane from above.
 fn irradiance() -> vec3<f32> {
     var sum = vec3<f32>(0.0);
-    for (var i = 0u; i < DIRECTION_COUNT; i++) {
+    for (var i = 0u; i < counted(DIRECTION_COUNT); i++) {
         sum += directions[i].w * max(directions[i].z, 0.0) * field[i];
     }
     return sum;
@@ -122,23 +125,43 @@ fn irradiance() -> vec3<f32> {
 
 // The field's mean over directions.
 fn mean_of_field() -> vec3<f32> {
-    var sum = vec3<f32>(0.0);
-    for (var i = 0u; i < DIRECTION_COUNT; i++) {
-        sum += directions[i].w * field[i];
-    }
-    return sum / (4.0 * PI);
+    return field_moments[4] / (4.0 * PI);
 }
 
 // The field's coefficient of a spherical harmonic, k from 1 to HARMONIC_COUNT, over that of degree 0.
 fn harmonic_of_field(k: u32) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
-    var all = vec3<f32>(0.0);
-    for (var i = 0u; i < DIRECTION_COUNT; i++) {
+    for (var i = 0u; i < counted(DIRECTION_COUNT); i++) {
         let direction = directions[i];
         let sine = sqrt(max(1.0 - direction.z * direction.z, 0.0));
         var y = harmonics(direction.z, direction.x / max(sine, 1e-6));
         sum += direction.w * y[k] * field[i];
-        all += direction.w * y[0] * field[i];
     }
-    return sum / max(all, vec3<f32>(1e-30));
+    // Y_00 is sqrt(1 / (4 pi)).
+    return sum / max(sqrt(0.25 / PI) * field_moments[4], vec3<f32>(1e-30));
+}
+
+// What is tabulated as logarithms: the source function in each direction, then the field's irradiance and its mean.
+const LOGARITHM_COUNT: u32 = DIRECTION_COUNT + 2u;
+
+// One of them: its values, the first layer_count of which count, and their texel at a place of every tile.
+struct Positive {
+    texel: vec2<u32>,
+    layer_count: u32,
+    values: array<vec3<f32>, PROFILE_GROUP_COUNT>,
+}
+
+fn positive(index: u32, place: vec2<u32>) -> Positive {
+    var found: Positive;
+    if index < DIRECTION_COUNT {
+        found.texel = texel_of(index, place);
+        found.layer_count = PROFILE_GROUP_COUNT;
+        found.values = source_function(index);
+        return found;
+    }
+    let is_mean = index > DIRECTION_COUNT;
+    found.texel = moment_texel(select(IRRADIANCE_TILE, MEAN_TILE, is_mean), place);
+    found.layer_count = 1u;
+    found.values[0] = select(irradiance(), mean_of_field(), is_mean);
+    return found;
 }

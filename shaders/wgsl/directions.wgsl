@@ -7,8 +7,9 @@
 // Definitions: BELOW_COUNT, BAND_COUNT, ABOVE_COUNT (cosines in each part), AZIMUTH_COUNT; INVOCATION_COUNT, the
 // workgroup's: invocation i takes the directions i, i + INVOCATION_COUNT, ..
 
+#import welkin::loops::counted
 #import welkin::march::GaussNode
-#import welkin::spherical_harmonics::{associated_legendre, degree_of}
+#import welkin::spherical_harmonics::{associated_legendre, degree_of, DEGREE_COUNT}
 
 const PI: f32 = 3.14159265358979;
 const BELOW_COUNT: u32 = #{BELOW_COUNT}u;
@@ -58,28 +59,41 @@ fn direction_of(index: u32, horizon_mu: f32) -> Direction {
 // Radiance seen along each direction, filled by all invocations before a barrier.
 var<workgroup> field: array<vec3<f32>, DIRECTION_COUNT>;
 
-// I_lm of the field for one coefficient: first the sum over azimuths, then over cosines.
+// For each cosine, int I cos(m phi) dw over its ring of directions, m = 0 .. DEGREE_COUNT - 1: coefficients of one m share it.
+const RING_SUM_COUNT: u32 = COSINE_COUNT * DEGREE_COUNT;
+var<workgroup> ring_sums: array<vec3<f32>, RING_SUM_COUNT>;
+
+// Keeps them; called by all invocations after the barrier behind the field, and before another.
+fn keep_ring_sums(invocation: u32, horizon_mu: f32) {
+    for (var i = invocation; i < RING_SUM_COUNT; i += INVOCATION_COUNT) {
+        let first = i / DEGREE_COUNT * AZIMUTH_COUNT;
+        let m = f32(i % DEGREE_COUNT);
+        var sum = vec3<f32>(0.0);
+        for (var k = 0u; k < AZIMUTH_COUNT; k++) {
+            sum += cos(m * azimuth_rad(k)) * field[first + k];
+        }
+        ring_sums[i] = direction_of(first, horizon_mu).solid_angle_sr * sum;
+    }
+}
+
+// I_lm of the field for one coefficient, from its ring sums.
 fn project(coefficient: u32, horizon_mu: f32) -> vec3<f32> {
     let l = degree_of(coefficient);
     let m = coefficient - l * (l + 1u) / 2u;
     var sum = vec3<f32>(0.0);
-    for (var j = 0u; j < COSINE_COUNT; j++) {
-        let first = direction_of(j * AZIMUTH_COUNT, horizon_mu);
-        var ring = vec3<f32>(0.0);
-        for (var k = 0u; k < AZIMUTH_COUNT; k++) {
-            ring += cos(f32(m) * azimuth_rad(k)) * field[j * AZIMUTH_COUNT + k];
-        }
-        sum += first.solid_angle_sr * associated_legendre(l, m, first.mu) * ring;
+    for (var j = 0u; j < counted(COSINE_COUNT); j++) {
+        let mu = direction_of(j * AZIMUTH_COUNT, horizon_mu).mu;
+        sum += associated_legendre(l, m, mu) * ring_sums[j * DEGREE_COUNT + m];
     }
     return sum;
 }
 
-// The field's irradiance on a horizontal plane from above.
+// The field's irradiance on a horizontal plane from above, from its ring sums.
 fn irradiance(horizon_mu: f32) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
-    for (var i = BELOW_COUNT * AZIMUTH_COUNT; i < DIRECTION_COUNT; i++) {
-        let direction = direction_of(i, horizon_mu);
-        sum += direction.solid_angle_sr * max(direction.mu, 0.0) * field[i];
+    for (var j = BELOW_COUNT; j < counted(COSINE_COUNT); j++) {
+        let mu = direction_of(j * AZIMUTH_COUNT, horizon_mu).mu;
+        sum += max(mu, 0.0) * ring_sums[j * DEGREE_COUNT];
     }
     return sum;
 }

@@ -3,6 +3,7 @@
 
 #import welkin::atmosphere::{atmosphere, densities, phase_per_sr, PI, SCATTERER_COUNT, SCATTERER_SLOTS}
 #import welkin::geometry::horizon_mu
+#import welkin::loops::counted
 #import welkin::march::{
     air_ray, cut_at_shadow, ground_mu_s, leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, AirRay,
     LEG_COUNT, NODE_COUNT
@@ -24,7 +25,7 @@ fn first_order_radiance(uncut: AirRay, hits_ground: bool, phases_per_sr: array<f
     let ray = cut_at_shadow(uncut);
     var tau = vec3<f32>(0.0);
     var radiance = vec3<f32>(0.0);
-    for (var i = 0u; i < LEG_COUNT; i++) {
+    for (var i = 0u; i < counted(LEG_COUNT); i++) {
         var leg = leg_of(ray, i);
         if leg_is_empty(leg) {
             continue;
@@ -63,7 +64,7 @@ fn phases_along(ray: AirRay) -> array<f32, SCATTERER_SLOTS> {
 fn next_order_radiance(table: texture_2d_array<f32>, ray: AirRay, hits_ground: bool) -> vec3<f32> {
     var tau = vec3<f32>(0.0);
     var radiance = vec3<f32>(0.0);
-    for (var i = 0u; i < LEG_COUNT; i++) {
+    for (var i = 0u; i < counted(LEG_COUNT); i++) {
         var leg = leg_of(ray, i);
         if leg_is_empty(leg) {
             continue;

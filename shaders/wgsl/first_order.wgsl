@@ -3,11 +3,10 @@
 // One workgroup per texel, one invocation per direction; for unit irradiance of the light.
 
 #import welkin::atmosphere::atmosphere
-#import welkin::directions::{direction_of, field, irradiance, project, DIRECTION_COUNT, INVOCATION_COUNT}
+#import welkin::directions::{direction_of, field, irradiance, keep_ring_sums, project, DIRECTION_COUNT, INVOCATION_COUNT}
 #import welkin::field_radiance::{first_order_radiance, phases_along, ray_from}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
-#import welkin::spherical_harmonics::COEFFICIENT_COUNT
 #import welkin::tables::IRRADIANCE_LAYER
 
 #ifdef HALF_TABLES
@@ -32,13 +31,16 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
         field[i] = first_order_radiance(ray, direction.hits_ground, phases_along(ray));
     }
     workgroupBarrier();
-    for (var k = invocation; k < COEFFICIENT_COUNT; k += INVOCATION_COUNT) {
-        let mean = max(project(0u, mu_h), vec3<f32>(DARK));
-        let value = select(project(k, mu_h) / mean, log(mean), k == 0u);
-        textureStore(first_order, texel.xy, k, vec4<f32>(value, 0.0));
-    }
-    if invocation == 0u {
-        let downward = max(irradiance(mu_h), vec3<f32>(DARK));
-        textureStore(first_order, texel.xy, IRRADIANCE_LAYER, vec4<f32>(log(downward), 0.0));
+    keep_ring_sums(invocation, mu_h);
+    workgroupBarrier();
+    let mean = max(project(0u, mu_h), vec3<f32>(DARK));
+    for (var layer = invocation; layer <= IRRADIANCE_LAYER; layer += INVOCATION_COUNT) {
+        var value = log(mean);
+        if layer == IRRADIANCE_LAYER {
+            value = log(max(irradiance(mu_h), vec3<f32>(DARK)));
+        } else if layer > 0u {
+            value = project(layer, mu_h) / mean;
+        }
+        textureStore(first_order, texel.xy, layer, vec4<f32>(value, 0.0));
     }
 }

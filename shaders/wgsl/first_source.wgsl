@@ -2,17 +2,16 @@
 //
 // One workgroup per (altitude, mu_s), one invocation per direction; for unit irradiance of the light.
 
-#import welkin::atmosphere::{atmosphere, PROFILE_GROUP_COUNT}
+#import welkin::atmosphere::atmosphere
 #import welkin::convolution::{
-    field, harmonic_of_field, irradiance, keep_direction, keep_moment, mean_of_field, source_function, MOMENT_COUNT
+    field, harmonic_of_field, keep_direction, keep_moment, positive, LOGARITHM_COUNT, MOMENT_COUNT
 }
 #import welkin::field_radiance::{first_order_radiance, ray_from}
 #import welkin::geometry::horizon_mu
 #import welkin::glow::phases_towards
 #import welkin::mapping
 #import welkin::source_grid::{
-    direction_of, moment_texel, texel_of, DIRECTION_COUNT, FIRST_HARMONIC_TILE, HARMONIC_COUNT, IRRADIANCE_TILE,
-    MEAN_TILE, TILE_SIZE
+    direction_of, moment_texel, DIRECTION_COUNT, FIRST_HARMONIC_TILE, HARMONIC_COUNT, TILE_SIZE
 }
 
 const INVOCATION_COUNT: u32 = #{GRID_INVOCATION_COUNT}u;
@@ -46,15 +45,11 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
         keep_moment(invocation);
     }
     workgroupBarrier();
-    for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
-        var source = source_function(i);
-        for (var g = 0u; g < PROFILE_GROUP_COUNT; g++) {
-            store(texel_of(i, texel.xy), g, source[g]);
+    for (var i = invocation; i < LOGARITHM_COUNT; i += INVOCATION_COUNT) {
+        var found = positive(i, texel.xy);
+        for (var layer = 0u; layer < found.layer_count; layer++) {
+            store(found.texel, layer, found.values[layer]);
         }
-    }
-    if invocation == 0u {
-        store(moment_texel(IRRADIANCE_TILE, texel.xy), 0u, irradiance());
-        store(moment_texel(MEAN_TILE, texel.xy), 0u, mean_of_field());
     }
     if invocation < HARMONIC_COUNT {
         let place = moment_texel(FIRST_HARMONIC_TILE + invocation, texel.xy);

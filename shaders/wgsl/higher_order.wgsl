@@ -4,11 +4,10 @@
 // from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric.
 
 #import welkin::atmosphere::atmosphere
-#import welkin::directions::{direction_of, field, irradiance, project, DIRECTION_COUNT, INVOCATION_COUNT}
+#import welkin::directions::{direction_of, field, irradiance, keep_ring_sums, project, DIRECTION_COUNT, INVOCATION_COUNT}
 #import welkin::field_radiance::{next_order_radiance, ray_from}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
-#import welkin::spherical_harmonics::COEFFICIENT_COUNT
 #import welkin::tables::IRRADIANCE_LAYER
 
 @group(0) @binding(6) var previous_order: texture_2d_array<f32>;
@@ -40,14 +39,16 @@ fn remainder(this_order: vec3<f32>, order_before: vec3<f32>) -> vec3<f32> {
 #endif
 }
 
-// A positive quantity, kept as its logarithm: the mean radiance, or the irradiance.
-fn add_logarithmic(texel: vec2<u32>, layer: u32, value: vec3<f32>) {
-    let before = exp(textureLoad(previous_order, texel, layer, 0).rgb);
-    let total = exp(textureLoad(previous_sum, texel, layer, 0).rgb) + value * remainder(value, before);
-#ifndef CLOSE_SERIES
-    textureStore(order, texel, layer, vec4<f32>(log(value), 0.0));
-#endif
-    textureStore(sum, texel, layer, vec4<f32>(log(total), 0.0));
+// What is kept of this order and of the sum with it.
+struct Kept {
+    order: vec3<f32>,
+    sum: vec3<f32>,
+}
+
+// Of a positive quantity, the mean radiance or the irradiance, its logarithm.
+fn logarithmic(value: vec3<f32>, order_before: vec3<f32>, sum_before: vec3<f32>) -> Kept {
+    let total = exp(sum_before) + value * remainder(value, exp(order_before));
+    return Kept(log(value), log(total));
 }
 
 @compute @workgroup_size(#{INVOCATION_COUNT})
@@ -63,20 +64,29 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
         field[i] = next_order_radiance(previous_order, ray, direction.hits_ground);
     }
     workgroupBarrier();
-    if invocation == 0u {
-        add_logarithmic(texel.xy, 0u, max(project(0u, mu_h), vec3<f32>(DARK)));
-        add_logarithmic(texel.xy, IRRADIANCE_LAYER, max(irradiance(mu_h), vec3<f32>(DARK)));
-    }
+    keep_ring_sums(invocation, mu_h);
+    workgroupBarrier();
     let mean = max(project(0u, mu_h), vec3<f32>(DARK));
     let mean_before = exp(textureLoad(previous_order, texel.xy, 0, 0).rgb);
     let mean_sum_before = exp(textureLoad(previous_sum, texel.xy, 0, 0).rgb);
     let rest = remainder(mean, mean_before);
-    for (var k = invocation + 1u; k < COEFFICIENT_COUNT; k += INVOCATION_COUNT) {
-        let coefficient = project(k, mu_h);
-        let total = mean_sum_before * textureLoad(previous_sum, texel.xy, k, 0).rgb + coefficient * rest;
+    // One place that stores for all layers: drivers make much code of a store.
+    for (var layer = invocation; layer <= IRRADIANCE_LAYER; layer += INVOCATION_COUNT) {
+        let order_before = textureLoad(previous_order, texel.xy, layer, 0).rgb;
+        let sum_before = textureLoad(previous_sum, texel.xy, layer, 0).rgb;
+        var kept: Kept;
+        if layer == 0u {
+            kept = logarithmic(mean, order_before, sum_before);
+        } else if layer == IRRADIANCE_LAYER {
+            kept = logarithmic(max(irradiance(mu_h), vec3<f32>(DARK)), order_before, sum_before);
+        } else {
+            let coefficient = project(layer, mu_h);
+            let total = mean_sum_before * sum_before + coefficient * rest;
+            kept = Kept(coefficient / mean, total / (mean_sum_before + mean * rest));
+        }
 #ifndef CLOSE_SERIES
-        textureStore(order, texel.xy, k, vec4<f32>(coefficient / mean, 0.0));
+        textureStore(order, texel.xy, layer, vec4<f32>(kept.order, 0.0));
 #endif
-        textureStore(sum, texel.xy, k, vec4<f32>(total / (mean_sum_before + mean * rest), 0.0));
+        textureStore(sum, texel.xy, layer, vec4<f32>(kept.sum, 0.0));
     }
 }

@@ -3,16 +3,15 @@
 // Adds what it finds to the sum of all orders. The last pass (definition CLOSE_SERIES) adds the rest of the series:
 // from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric.
 
-#import welkin::atmosphere::{atmosphere, PROFILE_GROUP_COUNT}
+#import welkin::atmosphere::atmosphere
 #import welkin::convolution::{
-    field, harmonic_of_field, irradiance, keep_direction, keep_moment, mean_of_field, source_function, MOMENT_COUNT
+    field, harmonic_of_field, keep_direction, keep_moment, mean_of_field, positive, LOGARITHM_COUNT, MOMENT_COUNT
 }
 #import welkin::field_radiance::{next_order_radiance, ray_from}
 #import welkin::geometry::horizon_mu
 #import welkin::mapping
 #import welkin::source_grid::{
-    direction_of, moment_texel, texel_of, DIRECTION_COUNT, FIRST_HARMONIC_TILE, HARMONIC_COUNT, IRRADIANCE_TILE,
-    MEAN_TILE, TILE_SIZE
+    direction_of, moment_texel, DIRECTION_COUNT, FIRST_HARMONIC_TILE, HARMONIC_COUNT, MEAN_TILE, TILE_SIZE
 }
 
 const INVOCATION_COUNT: u32 = #{GRID_INVOCATION_COUNT}u;
@@ -76,15 +75,12 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
     }
     workgroupBarrier();
     let rest = remainder(texel.xy);
-    for (var i = invocation; i < DIRECTION_COUNT; i += INVOCATION_COUNT) {
-        var source = source_function(i);
-        for (var g = 0u; g < PROFILE_GROUP_COUNT; g++) {
-            add(texel_of(i, texel.xy), g, source[g], rest);
+    // One place that stores for all of them: drivers make much code of a store.
+    for (var i = invocation; i < LOGARITHM_COUNT; i += INVOCATION_COUNT) {
+        var found = positive(i, texel.xy);
+        for (var layer = 0u; layer < found.layer_count; layer++) {
+            add(found.texel, layer, found.values[layer], rest);
         }
-    }
-    if invocation == 0u {
-        add(moment_texel(IRRADIANCE_TILE, texel.xy), 0u, irradiance(), rest);
-        add(moment_texel(MEAN_TILE, texel.xy), 0u, mean_of_field(), rest);
     }
     if invocation < HARMONIC_COUNT {
         let before = exp(textureLoad(previous_sum, moment_texel(MEAN_TILE, texel.xy), 0, 0).rgb);

@@ -15,6 +15,7 @@
 #import welkin::field_radiance::ray_from
 #import welkin::geometry::{horizon_mu, shadow_interval_m}
 #import welkin::mapping
+#import welkin::loops::counted
 #import welkin::march::{
     leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, ground_mu_s, AirRay, LEG_COUNT, NODE_COUNT
 }
@@ -60,7 +61,7 @@ fn ring_along(altitude_m: f32, mu_s: f32, direction: Direction) -> Ring {
     }
     var sum: Ring;
     var tau = vec3<f32>(0.0);
-    for (var i = 0u; i < LEG_COUNT; i++) {
+    for (var i = 0u; i < counted(LEG_COUNT); i++) {
         var leg = leg_of(rays[0], i);
         if leg_is_empty(leg) {
             continue;

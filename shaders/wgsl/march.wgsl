@@ -7,7 +7,7 @@
 // nodes is Simpson's rule in v, which reuses the extinction at both nodes; that of tents, which have kinks, is in closed
 // form (welkin::tent). Measured in docs/accuracy.md.
 //
-//   for (var i = 0u; i < LEG_COUNT; i++) {
+//   for (var i = 0u; i < counted(LEG_COUNT); i++) {
 //       var leg = leg_of(ray, i);
 //       if leg_is_empty(leg) { continue; }
 //       for (var n = 0u; n < NODE_COUNT; n++) {
@@ -23,6 +23,7 @@
     atmosphere, extinction_without_tents_at, layer_bounds_m, LAYER_COUNT, TENT_SLOTS
 }
 #import welkin::geometry
+#import welkin::loops::counted
 #import welkin::tent::{distances_of_kinks_m, optical_depth_of_tents, Stretch}
 
 const NODE_COUNT: u32 = #{NODE_COUNT}u;
@@ -332,7 +333,7 @@ const FINE_PANELS: u32 = #{FINE_PANELS}u;
 // Optical depth along the whole ray.
 fn optical_depth_along(ray: AirRay) -> vec3<f32> {
     var optical_depth = vec3<f32>(0.0);
-    for (var i = 0u; i < LEG_COUNT; i++) {
+    for (var i = 0u; i < counted(LEG_COUNT); i++) {
         var leg = leg_of(ray, i);
         if leg_is_empty(leg) {
             continue;

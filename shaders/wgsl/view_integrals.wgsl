@@ -4,6 +4,7 @@
 // Definitions: MULTIPLE_SCATTERING; FAN_COUNT, rays that are walked together (where FANS is defined).
 
 #import welkin::atmosphere::{atmosphere, densities, SCATTERER_COUNT, SCATTERER_SLOTS}
+#import welkin::loops::counted
 #import welkin::march::{
     leg_advance, leg_finish, leg_is_empty, leg_of, local_directions, AirRay, LEG_COUNT, NODE_COUNT
 }
@@ -27,7 +28,7 @@ fn integrate(ray: AirRay) -> Integrals {
 #endif
     var sum: Integrals;
     var tau = vec3<f32>(0.0);
-    for (var i = 0u; i < LEG_COUNT; i++) {
+    for (var i = 0u; i < counted(LEG_COUNT); i++) {
         var leg = leg_of(ray, i);
         if leg_is_empty(leg) {
             continue;
@@ -70,7 +71,7 @@ fn integrate_fan(rays: array<AirRay, FAN_COUNT>) -> array<Integrals, FAN_COUNT> 
     let ray = fan[0];
     var sums: array<Integrals, FAN_COUNT>;
     var tau = vec3<f32>(0.0);
-    for (var i = 0u; i < LEG_COUNT; i++) {
+    for (var i = 0u; i < counted(LEG_COUNT); i++) {
         var leg = leg_of(ray, i);
         if leg_is_empty(leg) {
             continue;
