@@ -26,6 +26,22 @@ pub struct Camera {
     pub sun: [f32; 3],
 }
 
+impl Camera {
+    /// From the ground towards north and `elevation_deg` up, the sun in the south; x is east and z south.
+    pub fn towards_north(elevation_deg: f32, sun_elevation_deg: f32) -> Self {
+        let (sine, cosine) = elevation_deg.to_radians().sin_cos();
+        let (sun_sine, sun_cosine) = sun_elevation_deg.to_radians().sin_cos();
+        Self {
+            altitude_m: 2.0,
+            right: [1.0, 0.0, 0.0],
+            up: [0.0, cosine, sine],
+            forward: [0.0, sine, -cosine],
+            half_height: 30.0_f32.to_radians().tan(),
+            sun: [0.0, sun_sine, sun_cosine],
+        }
+    }
+}
+
 /// WGSL `View`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

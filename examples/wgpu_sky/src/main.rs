@@ -15,17 +15,7 @@ fn main() -> anyhow::Result<()> {
         [pack, picture, sun] => (pack, picture, sun.to_str().context("not a number")?.parse::<f32>()?),
         _ => bail!("usage: wgpu_sky PACK PICTURE.png [SUN_ELEVATION_DEG]"),
     };
-    let (sine, cosine) = 20.0_f32.to_radians().sin_cos();
-    let (sun_sine, sun_cosine) = elevation_deg.to_radians().sin_cos();
-    let camera = Camera {
-        altitude_m: 2.0,
-        right: [1.0, 0.0, 0.0],
-        up: [0.0, cosine, sine],
-        forward: [0.0, sine, -cosine],
-        half_height: 30.0_f32.to_radians().tan(),
-        sun: [0.0, sun_sine, sun_cosine],
-    };
-    let radiance = draw(pack, &camera, SIZE)?;
+    let radiance = draw(pack, &Camera::towards_north(20.0, elevation_deg), SIZE)?;
     // A simple exposure: a curve towards white, then sRGB.
     let encoded = |linear: f32| match 1.0 - (-4.0 * linear).exp() {
         dark if dark <= 0.003_130_8 => 12.92 * dark,
