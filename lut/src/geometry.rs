@@ -68,6 +68,13 @@ pub fn grazing_distance_m(radius_m: f64, altitude_m: f64, mu: f64, shell_m: f64)
     gap / (discriminant.sqrt() - b).max(gap.max(0.0).sqrt()).max(f64::MIN_POSITIVE)
 }
 
+/// The part of a ray on the side of the planet's centre away from the light, where r mu_s + t nu < 0, as distances [start, end]
+/// of the whole line, m; `r` is the distance of its start from the centre. A ray across the light stays on its side.
+fn side_away_m(r: f64, mu_s: f64, nu: f64) -> [f64; 2] {
+    let crossing_m = -r * mu_s / if nu.abs() < 1e-20 { 1e-20 } else { nu };
+    if nu > -1e-20 { [f64::NEG_INFINITY, crossing_m] } else { [crossing_m, f64::INFINITY] }
+}
+
 /// The part of a ray inside the planet's shadow in parallel light, as distances (start, end) in [0, length]; start ≥ end
 /// where it is lit all along. `mu_s` is the cosine of the light's zenith angle, `nu` that of the angle to the light.
 ///
@@ -92,21 +99,18 @@ pub fn shadow_interval_m(radius_m: f64, altitude_m: f64, [mu, mu_s, nu]: [f64; 3
     let first = q / sin2_nu;
     let second = if q == 0.0 { first } else { c / q };
     let (mut start, mut end) = (first.min(second), first.max(second));
-    // Only the side away from the light is dark: r mu_s + t nu < 0. A ray across the light stays on its side.
-    let crossing = -r * mu_s / if nu.abs() < 1e-20 { 1e-20 } else { nu };
-    if nu > -1e-20 {
-        end = end.min(crossing);
-    } else {
-        start = start.max(crossing);
-    }
+    let [dark_from, dark_to] = side_away_m(r, mu_s, nu);
+    (start, end) = (start.max(dark_from), end.min(dark_to));
     [start.max(0.0), end.min(length_m)]
 }
 
-/// Distance at which a ray passes closest to the axis of the planet's shadow, m, in [0, length]; 0 on the side of the light.
+/// Distance at which a ray passes closest to the axis of the planet's shadow on the side away from the light, m, in [0, length];
+/// an end of the ray where none of it lies there.
 pub fn closest_to_shadow_m(radius_m: f64, altitude_m: f64, [mu, mu_s, nu]: [f64; 3], length_m: f64) -> f64 {
     let r = radius_m + altitude_m;
     let closest_m = r * (nu * mu_s - mu) / (1.0 - nu * nu).max(1e-12);
-    if r * mu_s + closest_m * nu < 0.0 { closest_m.clamp(0.0, length_m) } else { 0.0 }
+    let [dark_from, dark_to] = side_away_m(r, mu_s, nu);
+    closest_m.clamp(dark_from, dark_to).clamp(0.0, length_m)
 }
 
 #[cfg(test)]
@@ -157,5 +161,24 @@ mod tests {
         assert!([-1e4, 1e4].iter().all(|way_m| axis_m2(closest_m + way_m) > axis_m2(closest_m)));
         // Towards the light nothing is behind the planet.
         assert_eq!(closest_to_shadow_m(EARTH_M, 0.0, [0.0, 0.5, 0.8], length_m), 0.0);
+    }
+
+    #[test]
+    fn where_a_ray_is_closest_to_the_shadow_does_not_jump_as_the_sun_sets() {
+        // Half away from the sun, downwards past the limb, from 62 km.
+        let (altitude_m, view_rad, length_m) = (62_000.0, 97f64.to_radians(), 1.5e6);
+        let closest_m = |sun_deg: f64| {
+            let sun_rad = sun_deg.to_radians();
+            let nu = view_rad.cos() * sun_rad.cos() + view_rad.sin() * sun_rad.sin() * 120f64.to_radians().cos();
+            let directions = [view_rad.cos(), sun_rad.cos(), nu];
+            closest_to_shadow_m(EARTH_M, altitude_m, directions, length_m)
+        };
+        let suns_deg: Vec<_> = (0..=1000).map(|step| 80.0 + 0.02 * f64::from(step)).collect();
+        let at_m: Vec<_> = suns_deg.iter().map(|sun| closest_m(*sun)).collect();
+        // The terminator moves by the radius times the sun's step, and along a ray that is aslant to it a few times as far; where
+        // only rays count that are closest behind it, the place jumps by half of the planet's radius.
+        let step_m = 0.02f64.to_radians() * (EARTH_M + altitude_m);
+        assert!(at_m.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 4.0 * step_m), "{at_m:?}");
+        assert!(at_m[0] == length_m && at_m[500] < 0.8 * length_m, "the place moves: {} {}", at_m[0], at_m[500]);
     }
 }

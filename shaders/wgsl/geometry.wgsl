@@ -72,6 +72,13 @@ fn shell_crossings_m(radius_m: f32, altitude_m: f32, mu: f32, shell_m: f32) -> v
     return max(vec2<f32>(min(q, other), max(q, other)), vec2<f32>(0.0));
 }
 
+// The part of a ray on the side of the planet's centre away from the light, where r mu_s + t nu < 0, as distances (start, end)
+// of the whole line; r is the distance of its start from the centre. A ray across the light stays on its side.
+fn side_away_m(r: f32, mu_s: f32, nu: f32) -> vec2<f32> {
+    let crossing_m = -r * mu_s / select(nu, 1e-20, abs(nu) < 1e-20);
+    return select(vec2<f32>(crossing_m, 1e30), vec2<f32>(-1e30, crossing_m), nu > -1e-20);
+}
+
 // The part of a ray inside the planet's shadow, as distances (start, end) in [0, length_m]; start >= end when lit.
 //
 // The shadow of a sphere in parallel light is a half-infinite cylinder, a convex set: a ray meets it in one interval,
@@ -98,21 +105,19 @@ fn shadow_interval_m(radius_m: f32, altitude_m: f32, mu: f32, mu_s: f32, nu: f32
     let t_1 = select(c / q, t_0, q == 0.0);
     var start = min(t_0, t_1);
     var end = max(t_0, t_1);
-    // Only the side away from the light is dark: r mu_s + t nu < 0. A ray across the light stays on its side.
-    let crossing = -r * mu_s / select(nu, 1e-20, abs(nu) < 1e-20);
-    if nu > -1e-20 {
-        end = min(end, crossing);
-    } else {
-        start = max(start, crossing);
-    }
+    let dark_m = side_away_m(r, mu_s, nu);
+    start = max(start, dark_m.x);
+    end = min(end, dark_m.y);
     return vec2<f32>(max(start, 0.0), min(end, length_m));
 }
 
-// Distance at which a ray passes closest to the axis of the planet's shadow, in [0, length_m]; 0 on the side of the light.
+// Distance at which a ray passes closest to the axis of the planet's shadow on the side away from the light, in [0, length_m]; an
+// end of the ray where none of it lies there.
 fn closest_to_shadow_m(radius_m: f32, altitude_m: f32, mu: f32, mu_s: f32, nu: f32, length_m: f32) -> f32 {
     let r = radius_m + altitude_m;
     let closest_m = r * (nu * mu_s - mu) / max(1.0 - nu * nu, 1e-12);
-    return select(0.0, clamp(closest_m, 0.0, length_m), r * mu_s + closest_m * nu < 0.0);
+    let dark_m = side_away_m(r, mu_s, nu);
+    return clamp(clamp(closest_m, dark_m.x, dark_m.y), 0.0, length_m);
 }
 
 // acos, within 2e-8 of its value before rounding: what devices have may be thousands of times farther off, which tables

@@ -123,7 +123,8 @@ fn cut_at_shadow(ray: AirRay) -> AirRay {
 
 // Whether that has given the ray another leg.
 fn is_cut_by_shadow(ray: AirRay) -> bool {
-    return ray.shadow_m.x <= ray.shadow_m.y && ray.shadow_m.y > 0.0;
+    let is_cut = ray.shadow_m.x <= ray.shadow_m.y;
+    return is_cut && ray.shadow_m.y > 0.0 && ray.shadow_m.x < ray.length_m;
 }
 
 // A view ray, whose observer may stand in space: then it starts where it enters the air, if it does.
