@@ -116,7 +116,7 @@ fn planted_bugs_are_caught_by_name() {
         (
             "no floor under a logarithm",
             with_bug("view_integrals.wgsl", "log(max(light, vec3<f32>(DARK)))", "log(light)"),
-            "sun 6° down",
+            "optical depth 1e6 from below",
             "radiance must be finite",
         ),
         (
