@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use naga::back::spv;
 use naga::compact::{KeepUnused, compact};
+use naga::proc::{LayoutError, Layouter};
 use naga::valid::{ModuleInfo, ValidationFlags, Validator};
 use naga::{AddressSpace, ShaderStage, StorageAccess};
 
@@ -44,6 +45,8 @@ pub struct Shader {
     pub entry_point: String,
     /// `@workgroup_size`.
     pub workgroup_size: [u32; 3],
+    /// Memory that a workgroup shares; of a foreign shader it is not known, and 0.
+    pub workgroup_bytes: u32,
     /// The resources that the entry point uses, in the order of group and index.
     pub bindings: Vec<Binding>,
     structs: BTreeMap<String, StructLayout>,
@@ -89,16 +92,32 @@ impl Shader {
         let uses = info.get_entry_point(0);
         let bindings = reflect::bindings(&file, &module, |variable| !uses[variable].is_empty())?;
         let spirv = spirv(&module, &info).map_err(|error| spirv_error(error.to_string()))?;
-        let name = pass.to_owned();
-        let entry_point = entry.name.clone();
-        Ok(Self { name, spirv, entry_point, workgroup_size: entry.workgroup_size, bindings, structs, trusted: true })
+        Ok(Self {
+            name: pass.to_owned(),
+            spirv,
+            entry_point: entry.name.clone(),
+            workgroup_size: entry.workgroup_size,
+            workgroup_bytes: workgroup_bytes(&module).map_err(|error| spirv_error(error.to_string()))?,
+            bindings,
+            structs,
+            trusted: true,
+        })
     }
 
     /// A compute shader that another compiler has made. Nothing is checked, so that a host can only run it where it
     /// answers for it.
     pub fn foreign(name: &str, spirv: Vec<u32>, workgroup_size: [u32; 3], bindings: Vec<Binding>) -> Self {
         let (name, entry_point) = (name.to_owned(), "main".to_owned());
-        Self { name, spirv, entry_point, workgroup_size, bindings, structs: BTreeMap::new(), trusted: false }
+        Self {
+            name,
+            spirv,
+            entry_point,
+            workgroup_size,
+            workgroup_bytes: 0,
+            bindings,
+            structs: BTreeMap::new(),
+            trusted: false,
+        }
     }
 
     /// Whether this crate has compiled it.
@@ -142,6 +161,14 @@ fn move_uniforms_to_storage(module: &mut naga::Module) {
             variable.space = AddressSpace::Storage { access: StorageAccess::LOAD };
         }
     }
+}
+
+/// Bytes of a module's variables that workgroups share.
+fn workgroup_bytes(module: &naga::Module) -> Result<u32, LayoutError> {
+    let mut layouter = Layouter::default();
+    layouter.update(module.to_ctx())?;
+    let shared = module.global_variables.iter().filter(|(_, variable)| variable.space == AddressSpace::WorkGroup);
+    Ok(shared.map(|(_, variable)| layouter[variable.ty].to_stride()).sum())
 }
 
 /// Checks a module by naga's rules.

@@ -64,6 +64,10 @@ pub struct Limits {
     pub workgroup_size: [u32; 3],
     /// Invocations of a workgroup.
     pub workgroup_invocations: u32,
+    /// Memory that a workgroup shares, bytes.
+    pub workgroup_bytes: u32,
+    /// Resources that a pass may use, by kind.
+    pub resources: ResourceLimits,
     /// Bytes of a uniform buffer.
     pub uniform_bytes: u32,
     /// Bytes of a storage buffer.
@@ -72,6 +76,23 @@ pub struct Limits {
     pub timestamp_period_ns: f32,
     /// Bits of a timestamp that count; 0 where the queue has none.
     pub timestamp_bits: u32,
+}
+
+/// Resources that a stage may use of each kind, and of all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ResourceLimits {
+    /// Uniform buffers.
+    pub uniform_buffers: u32,
+    /// Storage buffers.
+    pub storage_buffers: u32,
+    /// Images that are read through samplers or loaded.
+    pub sampled_images: u32,
+    /// Images that are written.
+    pub storage_images: u32,
+    /// Samplers.
+    pub samplers: u32,
+    /// All but samplers.
+    pub all: u32,
 }
 
 /// A device that was found, before it is opened.
@@ -184,13 +205,22 @@ fn kind(kind: vk::PhysicalDeviceType) -> DeviceKind {
     }
 }
 
-fn limits(limits: &vk::PhysicalDeviceLimits, timestamp_bits: u32) -> Limits {
+pub(super) fn limits(limits: &vk::PhysicalDeviceLimits, timestamp_bits: u32) -> Limits {
     Limits {
         image_side: [limits.max_image_dimension1_d, limits.max_image_dimension2_d, limits.max_image_dimension3_d],
         image_layers: limits.max_image_array_layers,
         workgroups: limits.max_compute_work_group_count,
         workgroup_size: limits.max_compute_work_group_size,
         workgroup_invocations: limits.max_compute_work_group_invocations,
+        workgroup_bytes: limits.max_compute_shared_memory_size,
+        resources: ResourceLimits {
+            uniform_buffers: limits.max_per_stage_descriptor_uniform_buffers,
+            storage_buffers: limits.max_per_stage_descriptor_storage_buffers,
+            sampled_images: limits.max_per_stage_descriptor_sampled_images,
+            storage_images: limits.max_per_stage_descriptor_storage_images,
+            samplers: limits.max_per_stage_descriptor_samplers,
+            all: limits.max_per_stage_resources,
+        },
         uniform_bytes: limits.max_uniform_buffer_range,
         storage_bytes: limits.max_storage_buffer_range,
         timestamp_period_ns: limits.timestamp_period,

@@ -41,7 +41,7 @@ use welkin_shaders::{ParameterBuffers, Shader};
 
 pub use buffer::{BufferKind, GpuBuffer};
 pub use census::Population;
-pub use device::{DeviceInfo, DeviceKind, DeviceRequest, Limits};
+pub use device::{DeviceInfo, DeviceKind, DeviceRequest, Limits, ResourceLimits};
 pub use error::GpuError;
 pub use format::{Filtering, ImageFormat, ScreenEncoding};
 pub use heap::give_back_freed_memory;

@@ -7,6 +7,7 @@ use welkin_shaders::{Binding, BindingKind, Shader};
 
 use super::census::{Counted, Kind};
 use super::context::Context;
+use super::device::{Limits, ResourceLimits};
 use super::error::{During, GpuError};
 
 /// Uniform buffers that a pass may use. Mesa 22's lavapipe writes out of bounds when a branch or loop bound depends on
@@ -43,7 +44,7 @@ pub(crate) struct PipelineInner {
 
 impl PipelineInner {
     pub(crate) fn new(context: &Arc<Context>, shader: &Shader) -> Result<Self, GpuError> {
-        check(context, shader)?;
+        check(&context.info.limits, shader)?;
         // An early return destroys what there is.
         let mut pipeline = Self {
             context: context.clone(),
@@ -83,14 +84,9 @@ impl Drop for PipelineInner {
     }
 }
 
-fn check(context: &Context, shader: &Shader) -> Result<(), GpuError> {
+/// Whether a device can run a pass.
+fn check(limits: &Limits, shader: &Shader) -> Result<(), GpuError> {
     let refuse = |reason: String| Err(GpuError::Pipeline { pass: shader.name.clone(), reason });
-    let is_uniform = |binding: &&Binding| matches!(binding.kind, BindingKind::UniformBuffer { .. });
-    let uniforms = shader.bindings.iter().filter(is_uniform).count();
-    if uniforms > MAX_UNIFORM_BUFFERS {
-        return refuse(format!("{uniforms} uniform buffers; at most {MAX_UNIFORM_BUFFERS} are allowed"));
-    }
-    let limits = &context.info.limits;
     let size = shader.workgroup_size;
     let invocations = size.iter().map(|&n| u64::from(n)).product::<u64>();
     let too_wide = size.iter().zip(limits.workgroup_size).any(|(&n, limit)| n > limit);
@@ -98,7 +94,44 @@ fn check(context: &Context, shader: &Shader) -> Result<(), GpuError> {
         let (sides, all) = (limits.workgroup_size, limits.workgroup_invocations);
         return refuse(format!("workgroups of {size:?}; the device allows {sides:?}, and {all} invocations in all"));
     }
-    Ok(())
+    let (shared, limit) = (shader.workgroup_bytes, limits.workgroup_bytes);
+    if shared > limit {
+        return refuse(format!("{shared} bytes shared by a workgroup; the device has {limit}"));
+    }
+    let used = used(shader);
+    if used.uniform_buffers > MAX_UNIFORM_BUFFERS as u32 {
+        let reason = format!("{} uniform buffers; at most {MAX_UNIFORM_BUFFERS} are allowed", used.uniform_buffers);
+        return refuse(reason);
+    }
+    let allowed = limits.resources;
+    let kinds = [
+        ("uniform buffers", used.uniform_buffers, allowed.uniform_buffers),
+        ("storage buffers", used.storage_buffers, allowed.storage_buffers),
+        ("sampled images", used.sampled_images, allowed.sampled_images),
+        ("storage images", used.storage_images, allowed.storage_images),
+        ("samplers", used.samplers, allowed.samplers),
+        ("buffers and images", used.all, allowed.all),
+    ];
+    match kinds.into_iter().find(|(_, used, allowed)| used > allowed) {
+        Some((kind, used, allowed)) => refuse(format!("{used} {kind}; the device allows {allowed}")),
+        None => Ok(()),
+    }
+}
+
+/// The resources that a pass uses.
+fn used(shader: &Shader) -> ResourceLimits {
+    let count = |is: fn(&BindingKind) -> bool| shader.bindings.iter().filter(|b| is(&b.kind)).count() as u32;
+    let samplers = count(|kind| matches!(kind, BindingKind::Sampler | BindingKind::CombinedTexture { .. }));
+    ResourceLimits {
+        uniform_buffers: count(|kind| matches!(kind, BindingKind::UniformBuffer { .. })),
+        storage_buffers: count(|kind| matches!(kind, BindingKind::StorageBuffer { .. })),
+        sampled_images: count(|kind| {
+            matches!(kind, BindingKind::SampledTexture { .. } | BindingKind::CombinedTexture { .. })
+        }),
+        storage_images: count(|kind| matches!(kind, BindingKind::StorageTexture { .. })),
+        samplers,
+        all: count(|kind| !matches!(kind, BindingKind::Sampler)),
+    }
 }
 
 fn set_layout(context: &Context, bindings: &[Binding], group: u32) -> Result<vk::DescriptorSetLayout, GpuError> {
@@ -144,4 +177,54 @@ fn compute_pipeline(context: &Context, shader: &Shader, layout: vk::PipelineLayo
     unsafe { device.destroy_shader_module(module, None) };
     let pipelines = pipelines.map_err(|(_, result)| result).during("vkCreateComputePipelines")?;
     pipelines.first().copied().ok_or_else(|| refuse("the driver returned no pipeline".to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use ash::vk;
+    use welkin_shaders::{Definitions, Sources};
+
+    use super::super::device::limits;
+    use super::*;
+
+    fn shader(text: String) -> Shader {
+        Shader::from_sources(&Sources::default().with("pass.wgsl", text), "pass", &Definitions::new()).unwrap()
+    }
+
+    #[test]
+    fn what_a_pass_needs_beyond_a_device_is_said_by_pass_and_kind() {
+        // What every device of Vulkan has at least.
+        let least = vk::PhysicalDeviceLimits {
+            max_compute_work_group_size: [128, 128, 64],
+            max_compute_work_group_invocations: 128,
+            max_compute_shared_memory_size: 16384,
+            max_per_stage_descriptor_uniform_buffers: 12,
+            max_per_stage_descriptor_storage_buffers: 4,
+            max_per_stage_descriptor_sampled_images: 16,
+            max_per_stage_descriptor_storage_images: 4,
+            max_per_stage_descriptor_samplers: 16,
+            max_per_stage_resources: 128,
+            ..Default::default()
+        };
+        let said = |text: String| check(&limits(&least, 0), &shader(text)).err().map(|error| error.to_string());
+        let with_buffers = |count: u32| {
+            let variable = |i: u32| format!("@group(0) @binding({i}) var<storage, read_write> b{i}: u32;\n");
+            let variables: String = (0..count).map(variable).collect();
+            let writes: String = (0..count).map(|i| format!("b{i} = {i}u; ")).collect();
+            format!("{variables}@compute @workgroup_size(64) fn main() {{ {writes} }}")
+        };
+        assert_eq!(said(with_buffers(4)), None);
+        let error = said(with_buffers(5)).unwrap();
+        assert!(error.contains("pass") && error.contains("5 storage buffers; the device allows 4"), "{error}");
+        let sharing = |vectors: u32| {
+            format!(
+                "var<workgroup> light: array<vec4<f32>, {vectors}>;\n@group(0) @binding(0) var<storage, read_write> sum: f32;\n\
+                 @compute @workgroup_size(64) fn main() {{ light[0].x = 1.0; workgroupBarrier(); sum = light[{}].x; }}",
+                vectors - 1
+            )
+        };
+        assert_eq!(said(sharing(1024)), None);
+        let error = said(sharing(1025)).unwrap();
+        assert!(error.contains("16400 bytes shared by a workgroup; the device has 16384"), "{error}");
+    }
 }
