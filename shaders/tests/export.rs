@@ -1,9 +1,12 @@
 //! Passes in the languages of other engines: other compilers take them, and people can read them.
 
+mod exported;
+
 use std::path::Path;
 use std::process::Command;
 
-use welkin_shaders::{Definition, Definitions, Language, Sources};
+use exported::{PASSES, definitions};
+use welkin_shaders::{Language, Sources};
 
 /// Functions of `wgsl/pack.wgsl` that engines call.
 const FUNCTIONS: [&str; 6] = [
@@ -18,37 +21,7 @@ const FUNCTIONS: [&str; 6] = [
 /// What engines bind.
 const RESOURCES: [&str; 5] = ["sky", "table_sampler", "transmittance_table", "irradiance_table", "scattering_table"];
 
-/// Passes that engines take.
-const PASSES: [&str; 5] = ["pack_probe", "optical_depth", "first_order", "higher_order", "scattering_table"];
-
-/// The Earth's air: two exponential scatterers and ozone, which only absorbs.
-fn definitions() -> Definitions {
-    let numbers = [
-        ("CONSTITUENT_COUNT", 3),
-        ("SCATTERING_EXPONENTIAL_END", 2),
-        ("SCATTERING_TENT_END", 2),
-        ("SCATTERER_COUNT", 2),
-        ("ABSORBING_EXPONENTIAL_END", 2),
-        ("ABSORBING_TENT_END", 3),
-        ("LOBE_COUNT", 1),
-        ("PROFILE_GROUP_COUNT", 2),
-        ("NODE_COUNT", 10),
-        ("FINE_PANELS", 64),
-        ("BELOW_COUNT", 4),
-        ("BAND_COUNT", 3),
-        ("ABOVE_COUNT", 5),
-        ("AZIMUTH_COUNT", 6),
-        ("COSINE_COUNT", 12),
-        ("INVOCATION_COUNT", 72),
-        ("DEGREE_COUNT", 3),
-        ("COEFFICIENT_COUNT", 6),
-    ];
-    let flags = ["AIR", "LIT", "GROUND", "MULTIPLE_SCATTERING"];
-    let numbers = numbers.map(|(name, value)| (name.to_owned(), Definition::U32(value)));
-    numbers.into_iter().chain(flags.map(|name| (name.to_owned(), Definition::Bool(true)))).collect()
-}
-
-fn exported(language: Language, pass: &str) -> String {
+fn text_of(language: Language, pass: &str) -> String {
     let exported = language.export(&Sources::embedded(), pass, &definitions());
     String::from_utf8(exported.unwrap_or_else(|error| panic!("{error}")).bytes).unwrap()
 }
@@ -87,11 +60,11 @@ fn glslc_compiles_every_exported_pass() {
     ];
     for (language, file, arguments) in languages {
         for pass in PASSES {
-            let text = exported(language, pass);
+            let text = text_of(language, pass);
             glslc(folder.path(), file, &text, arguments).unwrap_or_else(|said| panic!("{pass}: {said}"));
         }
         // Negative control: a name that is not there is noticed.
-        let broken = exported(language, "pack_probe").replacen("ground_radiance(", "ground_radance(", 1);
+        let broken = text_of(language, "pack_probe").replacen("ground_radiance(", "ground_radance(", 1);
         assert!(glslc(folder.path(), file, &broken, arguments).is_err());
     }
 }

@@ -3,38 +3,12 @@
 //! `cargo run --release --manifest-path benches/shaderc/Cargo.toml`, which needs cmake and ninja. The exit code is 1 when
 //! one of them is refused.
 
+#[path = "../../../shaders/tests/exported/mod.rs"]
+mod exported;
+
+use exported::{PASSES, definitions};
 use shaderc::{CompileOptions, Compiler, EnvVersion, OptimizationLevel, ShaderKind, SourceLanguage, TargetEnv};
-use welkin_shaders::{Definition, Definitions, Language, Sources};
-
-/// Passes that engines take.
-const PASSES: [&str; 5] = ["pack_probe", "optical_depth", "first_order", "higher_order", "scattering_table"];
-
-/// The Earth's air: two exponential scatterers and ozone, which only absorbs.
-fn definitions() -> Definitions {
-    let numbers = [
-        ("CONSTITUENT_COUNT", 3),
-        ("SCATTERING_EXPONENTIAL_END", 2),
-        ("SCATTERING_TENT_END", 2),
-        ("SCATTERER_COUNT", 2),
-        ("ABSORBING_EXPONENTIAL_END", 2),
-        ("ABSORBING_TENT_END", 3),
-        ("LOBE_COUNT", 1),
-        ("PROFILE_GROUP_COUNT", 2),
-        ("NODE_COUNT", 10),
-        ("FINE_PANELS", 64),
-        ("BELOW_COUNT", 4),
-        ("BAND_COUNT", 3),
-        ("ABOVE_COUNT", 5),
-        ("AZIMUTH_COUNT", 6),
-        ("COSINE_COUNT", 12),
-        ("INVOCATION_COUNT", 72),
-        ("DEGREE_COUNT", 3),
-        ("COEFFICIENT_COUNT", 6),
-    ];
-    let flags = ["AIR", "LIT", "GROUND", "MULTIPLE_SCATTERING"];
-    let numbers = numbers.map(|(name, value)| (name.to_owned(), Definition::U32(value)));
-    numbers.into_iter().chain(flags.map(|name| (name.to_owned(), Definition::Bool(true)))).collect()
-}
+use welkin_shaders::{Language, Sources};
 
 /// Words of SPIR-V, or what the compiler says.
 fn compile(compiler: &Compiler, language: Language, pass: &str, text: &str) -> Result<usize, String> {

@@ -1,8 +1,8 @@
 //! HLSL for Direct3D.
 
+use naga::Module;
 use naga::back::hlsl;
 use naga::valid::ModuleInfo;
-use naga::{Module, TypeInner};
 
 pub(super) fn write(module: &Module, info: &ModuleInfo) -> Result<String, String> {
     let mut options = hlsl::Options {
@@ -25,23 +25,24 @@ pub(super) fn write(module: &Module, info: &ModuleInfo) -> Result<String, String
     let mut text = String::new();
     let written = hlsl::Writer::new(&mut text, &options, &pipeline).write(module, info, None);
     written.map_err(|error| error.to_string())?;
-    Ok(with_plain_samplers(&with_listed_zeros(&text), module))
+    Ok(with_plain_samplers(&with_listed_zeros(&text)))
 }
 
 /// naga reads samplers from a heap by indices in a buffer, as wgpu lays them out. Here each is a sampler in its register.
-fn with_plain_samplers(text: &str, module: &Module) -> String {
-    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
-    lines.retain(|line| !(line.contains("nagaSamplerHeap[2048]") || line.contains("nagaComparisonSamplerHeap[2048]")));
-    lines.retain(|line| !line.starts_with("StructuredBuffer<uint> nagaGroup"));
-    for (_, variable) in module.global_variables.iter() {
-        let (Some(place), Some(name)) = (variable.binding, &variable.name) else { continue };
-        if matches!(module.types[variable.ty].inner, TypeInner::Sampler { .. }) {
-            let start = format!("static const SamplerState {name} ");
-            let plain = format!("SamplerState {name} : register(s{}, space{});", place.binding, place.group);
-            lines.iter_mut().filter(|line| line.starts_with(&start)).for_each(|line| line.clone_from(&plain));
-        }
-    }
-    format!("{}\n", lines.join("\n"))
+fn with_plain_samplers(text: &str) -> String {
+    let is_heap = |line: &str| {
+        line.contains("nagaSamplerHeap[2048]")
+            || line.contains("nagaComparisonSamplerHeap[2048]")
+            || line.starts_with("StructuredBuffer<uint> nagaGroup")
+    };
+    let plain = |line: &str| {
+        let (name, place) =
+            line.strip_prefix("static const SamplerState ")?.split_once(" = nagaSamplerHeap[nagaGroup")?;
+        let (group, register) = place.strip_suffix("]];")?.split_once("SamplerIndexArray[")?;
+        Some(format!("SamplerState {name} : register(s{register}, space{group});"))
+    };
+    let lines = text.lines().filter(|line| !is_heap(line));
+    lines.map(|line| plain(line).unwrap_or_else(|| line.to_owned()) + "\n").collect()
 }
 
 /// naga casts zero to an array, which Microsoft's compilers take and glslang does not; all take a list of zeros.
@@ -57,12 +58,20 @@ fn with_listed_zeros(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::with_listed_zeros;
+    use super::{with_listed_zeros, with_plain_samplers};
 
     #[test]
     fn zeros_of_an_array_are_listed() {
         let text = "    float3 y[2] = (float3[2])0;\n    float3 z = (float3)0;\n";
         let listed = "    float3 y[2] = { (float3)0, (float3)0 };\n    float3 z = (float3)0;\n";
         assert_eq!(with_listed_zeros(text), listed);
+    }
+
+    #[test]
+    fn a_sampler_of_the_heap_becomes_one_of_its_own_by_the_name_that_it_has_there() {
+        let text = "SamplerState nagaSamplerHeap[2048]: register(s0, space0);\n\
+                    StructuredBuffer<uint> nagaGroup0SamplerIndexArray : register(t99, space0);\n\
+                    static const SamplerState table_sampler_1 = nagaSamplerHeap[nagaGroup0SamplerIndexArray[3]];\n";
+        assert_eq!(with_plain_samplers(text), "SamplerState table_sampler_1 : register(s3, space0);\n");
     }
 }
