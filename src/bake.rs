@@ -6,7 +6,7 @@ use welkin_lut::sky_tables::SkyTables;
 use welkin_shaders::{Language, ShaderError};
 
 use crate::passes::RenderError;
-use crate::plan::{Facts, Outputs, PlanError, Settings, expected_ringing};
+use crate::plan::{Facts, Outputs, PlanError, Settings};
 use crate::probe::Orders;
 use crate::renderer::Renderer;
 use crate::scene::{Light, Scene};
@@ -52,8 +52,8 @@ pub fn bake_on_device<'a>(
     air: &'a Air,
     settings: BakeSettings,
 ) -> Result<Baked<'a>, RenderError> {
-    let set = renderer.bake(scene, &settings)?;
-    Ok(Baked::around(air, settings, SkyTables::new(air, settings.scattering, set)))
+    let (source, set) = renderer.bake(scene, &settings)?;
+    Ok(Baked::around(air, settings, source, SkyTables::new(air, settings.scattering, set)))
 }
 
 /// What a pack of a scene says of itself. `backend` is what has computed the tables.
@@ -88,13 +88,6 @@ fn left_out(scene: &Scene) -> Vec<String> {
     });
     let volumes = scene.volumes.iter().filter(|volume| !volume.is_empty()).map(|volume| format!("'{}'", volume.name));
     layers.chain(volumes).chain(terrain).chain(glow).chain(lights).collect()
-}
-
-/// How much the sky of a pack rings, relative to its own light, where haze scatters forward; see
-/// [`crate::plan::expected_ringing`].
-pub fn ringing(air: &Air, settings: &BakeSettings) -> f64 {
-    let scatterers: Vec<_> = air.scatterers().iter().collect();
-    expected_ringing(&scatterers, air.planet().atmosphere_height_m, settings.degree_count)
 }
 
 /// The shader files of all languages, in a folder for each.

@@ -22,9 +22,9 @@ const FUNCTIONS: &str = "pack_functions";
 const ENTRY_POINTS: [(&str, &str, &[&str]); 6] = [
     ("sky_probe", "pack_probe", &[]),
     ("bake_optical_depth", "optical_depth", &[]),
-    ("bake_first_order", "first_order", &[]),
-    ("bake_higher_order", "higher_order", &[]),
-    ("bake_last_order", "higher_order", &["CLOSE_SERIES"]),
+    ("bake_first_source", "first_source", &[]),
+    ("bake_higher_source", "higher_source", &[]),
+    ("bake_last_source", "higher_source", &["CLOSE_SERIES"]),
     ("bake_scattering", "scattering_table", &[]),
 ];
 
@@ -90,11 +90,10 @@ pub fn shader_files(language: Language, facts: &Facts) -> Result<Vec<ShaderFile>
     let interface = Interface {
         language: language.name(),
         specialised_for: format!(
-            "air of {}; {} nodes on each leg of a ray, {} directions, degrees 0 to {} of spherical harmonics",
+            "air of {}; {} nodes on each leg of a ray, the source function in {} directions",
             constituents.join(", "),
             facts.settings.nodes_per_leg,
-            facts.settings.directions.count(),
-            facts.degree_count() - 1
+            facts.source_grid().count()
         ),
         entry_points,
     };

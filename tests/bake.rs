@@ -33,32 +33,42 @@ fn with_renderer(test: impl FnOnce(&mut Renderer)) {
     assert!(log.messages().is_empty(), "{:?}", log.messages());
 }
 
-/// Differences of logarithms, ascending, where either is above a limit.
-fn differences_above(limit: f64, one: &Table, other: &Table) -> Vec<f64> {
-    assert_eq!(one.size(), other.size());
-    let pairs = one.texels().iter().flatten().zip(other.texels().iter().flatten());
-    let mut all: Vec<_> = pairs.filter(|(a, b)| a.max(**b) > limit).map(|(a, b)| (a - b).abs()).collect();
-    all.sort_by(f64::total_cmp);
-    all
-}
-
 /// Irradiance of moonlight, and light per metre that makes a millionth of the sun's over a hundred kilometres: ln.
 const DARK: f64 = -14.0;
 const DARK_PER_M: f64 = -25.0;
 
-/// By how much tables differ: optical depths, relative to 1 or to themselves; irradiance, relative; scattered light, relative,
-/// at the 95th percentile and at most.
-fn differences(one: &TableSet, other: &TableSet) -> [f64; 4] {
+/// Differences of logarithms, ascending, where either is above a limit: under suns at the zenith, the last of `suns` columns,
+/// or elsewhere.
+fn differences_above(limit: f64, suns: u32, at_zenith: bool, [one, other]: [&Table; 2]) -> Vec<f64> {
+    assert_eq!(one.size(), other.size());
+    let pairs = one.texels().iter().zip(other.texels());
+    let chosen = pairs.enumerate().filter(|(i, _)| (*i as u32 % suns == suns - 1) == at_zenith);
+    let values = chosen.flat_map(|(_, (a, b))| a.iter().zip(b));
+    let mut all: Vec<_> = values.filter(|(a, b)| a.max(**b) > limit).map(|(a, b)| (a - b).abs()).collect();
+    all.sort_by(f64::total_cmp);
+    all
+}
+
+/// By how much tables differ: optical depths, relative to 1 or to themselves; then for suns off the zenith and at it irradiance,
+/// relative, and scattered light, relative, at the 95th percentile and at most.
+fn differences(one: &TableSet, other: &TableSet) -> [f64; 7] {
     let pairs = one.transmittance.texels().iter().flatten().zip(other.transmittance.texels().iter().flatten());
     let depth = pairs.map(|(a, b)| (a - b).abs() / b.max(1.0)).fold(0.0, f64::max);
-    let irradiance = differences_above(DARK, &one.irradiance, &other.irradiance);
-    let light = differences_above(DARK_PER_M, &one.scattering, &other.scattering);
-    [depth, irradiance[irradiance.len() - 1], light[light.len() * 95 / 100], light[light.len() - 1]]
+    let under = |at_zenith: bool| {
+        let both = [&one.irradiance, &other.irradiance];
+        let irradiance = differences_above(DARK, SMALL.source_size[0], at_zenith, both);
+        let both = [&one.scattering, &other.scattering];
+        let light = differences_above(DARK_PER_M, SMALL.scattering.suns, at_zenith, both);
+        [irradiance[irradiance.len() - 1], light[light.len() * 95 / 100], light[light.len() - 1]]
+    };
+    let ([a, b, c], [d, e, f]) = (under(false), under(true));
+    [depth, a, b, c, d, e, f]
 }
 
 /// What packs state (docs/tables.md). Scattered light differs most along rays that graze the ground, in the first rows, where an
-/// f32 rounds the sine of their small angle below the horizon.
-const BOUNDS: [f64; 4] = [1e-5, 1e-4, 1e-4, 0.03];
+/// f32 rounds the sine of their small angle below the horizon. Under a sun at the zenith the azimuth between it and a ray is
+/// a quotient of roundings in f32, and so few directions as here are seen to differ by it.
+const BOUNDS: [f64; 7] = [1e-5, 1e-5, 5e-5, 0.02, 2e-3, 5e-3, 0.04];
 
 #[test]
 fn device_and_processor_bake_the_same_tables() {
@@ -109,7 +119,7 @@ fn the_command_bakes_a_pack_verifies_it_and_refuses_it_when_a_byte_has_changed()
     let noon = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/noon.toml");
     let output = welkin(folder.path(), &format!("bake {noon} --out pack --quality low --format ktx2,exr"));
     assert!(output.status.success(), "{}", said(&output));
-    assert!(said(&output).contains("scattering 144 x 32 x"), "{}", said(&output));
+    assert!(said(&output).contains("scattering 200 x 24 x"), "{}", said(&output));
     for file in ["scattering.f16.ktx2", "scattering.f16.exr", "shaders/hlsl/sky.hlsl", "shaders/spirv/sky_probe.spv"] {
         assert!(folder.path().join("pack").join(file).is_file(), "no {file}");
     }

@@ -7,13 +7,10 @@ use std::f64::consts::PI;
 
 use crate::bake::{Air, ScatteringSize};
 use crate::geometry::{air_length_m, distance_to_shell_from_above, grazing_distance_m, horizon_mu};
-use crate::mapping::{MultipleScatteringMapping, OpticalDepthMapping, SkyHalf, SkyViewMapping};
+use crate::mapping::{MultipleScatteringMapping, OpticalDepthMapping, SkyHalf, SkyViewMapping, inside_tile};
 use crate::phase::PhaseLobe;
 use crate::table::{Table, mix};
 use crate::{BAND_COUNT, Bands, Planet};
-
-/// Keeps a filter inside its tile or block, in texels: `TILE_MARGIN` of the shaders.
-const TILE_MARGIN: f64 = 0.002;
 
 /// The tables of one air. docs/notation.md has their mappings.
 #[derive(Debug, Clone, PartialEq)]
@@ -160,16 +157,13 @@ impl SkyTables {
         let mapping = SkyViewMapping::within_air(horizon_rad);
         let view = mapping.unit(entry.mu.clamp(-1.0, 1.0).acos(), cos_phi.acos(), half);
         let light = MultipleScatteringMapping::new(self.planet()).unit(entry.altitude_m, entry.mu_s);
-        let inside = |unit: f64, count: u32| {
-            let last = f64::from(count - 1);
-            (unit * last).clamp(TILE_MARGIN, last - TILE_MARGIN)
-        };
         let azimuth = view[0] * f64::from(azimuths - 1);
         let low = azimuth.floor().min(f64::from(azimuths - 2));
         let block = u32::from(entry.hits_ground) * (1 + self.phases.len() as u32) + layer;
         let y = view[1] * f64::from(elevations - 1);
-        let z = f64::from(block * altitudes) + inside(light[1], altitudes);
-        let at = |tile: f64| self.set.scattering.trilinear([tile * f64::from(suns) + inside(light[0], suns), y, z]);
+        let z = f64::from(block * altitudes) + inside_tile(light[1], altitudes);
+        let at =
+            |tile: f64| self.set.scattering.trilinear([tile * f64::from(suns) + inside_tile(light[0], suns), y, z]);
         mix(at(low), at(low + 1.0), azimuth - low).map(f64::exp)
     }
 

@@ -12,6 +12,14 @@ fn inset(x: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
     return (x * (size - 1.0) + 0.5) / size;
 }
 
+// Keeps a filter inside its tile or block, of whose neighbours devices would take up to 1/256 at the edge.
+const TILE_MARGIN: f32 = 0.002;
+
+// From [0, 1] to a place in a tile, in texels from the centre of its first.
+fn inside_tile(x: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
+    return clamp(x * (size - 1.0), vec2<f32>(TILE_MARGIN), size - 1.0 - TILE_MARGIN);
+}
+
 // From a texel's index to [0, 1].
 fn unit_from_texel(texel: vec2<u32>, size: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(texel) / max(size - 1.0, vec2<f32>(1.0));

@@ -12,7 +12,7 @@
 
 #import welkin::geometry::{air_length_m, distance_to_shell_from_above, horizon_mu, precise_acos}
 #import welkin::mapping::{
-    inset, multiple_scattering_to_unit, optical_depth_to_unit, sky_view_to_unit, SkyViewRange, PI
+    inset, inside_tile, multiple_scattering_to_unit, optical_depth_to_unit, sky_view_to_unit, SkyViewRange, PI
 }
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
 
@@ -53,9 +53,6 @@ struct SkyParameters {
 // altitudes; elevations along y; tiles along x for azimuths, in each of them heights of the sun. Layer 0 is multiply
 // scattered radiance, the others are each scatterer's single scattering without its phase function.
 @group(0) @binding(4) var scattering_table: texture_3d<f32>;
-
-// Keeps a filter inside its tile or block, of whose neighbours devices would take up to 1/256 at the edge.
-const TILE_MARGIN: f32 = 0.002;
 
 // Where a view ray's way through the air begins: at the observer, or where the ray from space enters the air.
 struct AirEntry {
@@ -153,14 +150,13 @@ fn scattering_place(entry: AirEntry, nu: f32) -> ScatteringPlace {
     let suns = size.x / azimuths;
     let azimuth = view.x * (azimuths - 1.0);
     let low = clamp(floor(azimuth), 0.0, azimuths - 2.0);
-    let x = clamp(light.x * (suns - 1.0), TILE_MARGIN, suns - 1.0 - TILE_MARGIN);
-    let altitudes = f32(sky.altitude_count);
+    let inside = inside_tile(light, vec2<f32>(suns, f32(sky.altitude_count)));
     var place: ScatteringPlace;
-    place.x_low = low * suns + x;
+    place.x_low = low * suns + inside.x;
     place.x_high = place.x_low + suns;
     place.share = azimuth - low;
     place.y = view.y * (size.y - 1.0);
-    place.z = clamp(light.y * (altitudes - 1.0), TILE_MARGIN, altitudes - 1.0 - TILE_MARGIN);
+    place.z = inside.y;
     place.block = u32(entry.hits_ground) * (1u + sky.scatterer_count);
     return place;
 }

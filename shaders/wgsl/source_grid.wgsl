@@ -14,6 +14,7 @@
 // Definitions: GRID_GROUND_COUNT, GRID_LOW_COUNT, GRID_HIGH_COUNT (cosines in each part), GRID_AZIMUTH_COUNT;
 // GRID_MU_S_COUNT, GRID_ALTITUDE_COUNT (texels of a tile)
 
+#import welkin::geometry::precise_acos
 #import welkin::march::GaussNode
 
 const PI: f32 = 3.14159265358979;
@@ -99,7 +100,7 @@ fn direction_in_cell(index: u32, shares: vec2<f32>, horizon_mu: f32, mu_s: f32) 
 
 // The inverse of sin²(pi y / 2) on [0, 1].
 fn even(x: f32) -> f32 {
-    return asin(sqrt(clamp(x, 0.0, 1.0))) * 2.0 / PI;
+    return 1.0 - precise_acos(sqrt(clamp(x, 0.0, 1.0))) * 2.0 / PI;
 }
 
 // Row of tiles of a direction, counted in tiles; nodes lie at halves.
@@ -116,7 +117,7 @@ fn row_coordinate(mu: f32, horizon_mu: f32, mu_s: f32) -> f32 {
 
 // Column of tiles of an azimuth, counted in tiles; nodes lie at halves.
 fn column_coordinate(cos_phi: f32) -> f32 {
-    return f32(AZIMUTH_COUNT) * even(acos(clamp(cos_phi, -1.0, 1.0)) / PI);
+    return f32(AZIMUTH_COUNT) * even(precise_acos(clamp(cos_phi, -1.0, 1.0)) / PI);
 }
 
 // The texel of a direction at a place of every tile.

@@ -12,7 +12,7 @@
 
 // Texture coordinates of a place in [0, 1]² within a tile.
 fn tile_uv(place: vec2<f32>, tile: vec2<f32>, size: vec2<f32>) -> vec2<f32> {
-    return (tile * vec2<f32>(TILE_SIZE) + place * (vec2<f32>(TILE_SIZE) - 1.0) + 0.5) / size;
+    return (tile * vec2<f32>(TILE_SIZE) + mapping::inside_tile(place, vec2<f32>(TILE_SIZE)) + 0.5) / size;
 }
 
 // The four tiles around a direction, and the weight of each.

@@ -31,7 +31,7 @@ pub fn bake_cost(renderer: &mut Renderer, scene: &Scene, settings: &BakeSettings
     // Pipelines are made.
     renderer.bake(scene, settings)?;
     let stopwatch = Stopwatch::start();
-    let set = renderer.bake(scene, settings)?;
+    let (_, set) = renderer.bake(scene, settings)?;
     let texels: u32 = [&set.transmittance, &set.multiple_scattering, &set.scattering]
         .iter()
         .map(|table| table.size().iter().product::<u32>())

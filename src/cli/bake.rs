@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use welkin::bake::{air_of, bake_on_device, describe, ringing, shaders};
-use welkin::plan::{Quality, Settings, bake_settings};
+use welkin::bake::{air_of, bake_on_device, describe, shaders};
+use welkin::plan::{Quality, bake_settings};
 use welkin::scene::Scene;
 use welkin_lut::bake::{Air, BakeSettings, Baked};
 use welkin_lut::pack::{FileFormat, Manifest, PackError, PackOptions, Precision, verify, write_pack};
@@ -80,9 +80,7 @@ fn bake(arguments: &Arguments, path: &Path, out: &Path) -> Result<(), Failure> {
     }
     let scene = Scene::read(path)?;
     let air = air_of(&scene)?;
-    let quality = arguments.quality.unwrap_or_default();
-    let settings = bake_settings(quality);
-    warn_of_ringing(&air, &settings, quality);
+    let settings = bake_settings(arguments.quality.unwrap_or_default());
     let shaders = shaders(&scene, &settings)?;
     let (baked, backend) = compute(arguments, &scene, &air, settings)?;
     let or = |given: &[_], default| if given.is_empty() { vec![default] } else { given.to_vec() };
@@ -118,18 +116,6 @@ fn compute<'a>(
     });
     bar.finish_and_clear();
     Ok((baked, "cpu".to_owned()))
-}
-
-/// Where haze scatters forward, the renderer would choose a treatment that packs do not hold.
-fn warn_of_ringing(air: &Air, settings: &BakeSettings, quality: Quality) {
-    let (ringing, limit) = (ringing(air, settings), Settings::of(quality).ringing_limit);
-    if ringing > limit {
-        eprintln!(
-            "note: this haze scatters so far forward that multiple scattering in a pack of quality {quality} is off by \
-             about {:.1} %; a higher quality, or less haze, is nearer",
-            100.0 * ringing
-        );
-    }
 }
 
 /// Tables with sizes and errors, for people.

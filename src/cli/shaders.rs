@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use welkin::output::{AtomicFile, OutputError};
-use welkin::plan::{Facts, MultipleScattering, Outputs, Quality, Settings};
+use welkin::plan::{Facts, Outputs, Quality, Settings, bake_settings};
 use welkin::probe::Orders;
 use welkin::scene::Scene;
 use welkin::shader_export::shader_files;
@@ -42,10 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(path) => Scene::read(path)?,
         None => Scene::parse(EARTH, Path::new("earth.toml"))?,
     };
-    let settings = Settings {
-        multiple_scattering: MultipleScattering::Harmonics,
-        ..Settings::of(arguments.quality.unwrap_or_default())
-    };
+    let settings = Settings::for_bake(&bake_settings(arguments.quality.unwrap_or_default()));
     let facts = Facts::new(&scene, settings, Orders::All, Outputs::default())?;
     let files = shader_files(arguments.language, &facts)?;
     let folder = &arguments.out;

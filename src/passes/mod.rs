@@ -166,6 +166,9 @@ pub enum RenderError {
         /// What they must be.
         expected: String,
     },
+    /// There is no sky to bake.
+    #[error("nothing in the scene's air scatters light, so that there are no tables of it to bake")]
+    NothingToBake,
     /// The device cannot interpolate the tables.
     #[error(
         "device '{device}' can interpolate textures neither of 32-bit nor of half floats, which welkin's tables need; choose another with --device"

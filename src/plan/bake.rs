@@ -2,7 +2,7 @@
 
 use welkin_lut::bake::BakeSettings;
 
-use super::{Directions, MultipleScattering, Quality, Settings};
+use super::{MultipleScattering, Quality, Settings, Skipping};
 
 /// The sizes of a pack of some quality.
 pub fn bake_settings(quality: Quality) -> BakeSettings {
@@ -15,22 +15,17 @@ pub fn bake_settings(quality: Quality) -> BakeSettings {
 }
 
 impl Settings {
-    /// What the passes need to know to bake tables of these sizes. Packs hold spherical harmonics.
+    /// What the passes need to know to bake tables of these sizes. Packs hold the source function's light, whatever the air.
     pub fn for_bake(settings: &BakeSettings) -> Self {
-        let directions = settings.directions;
         Self {
             nodes_per_leg: settings.nodes_per_leg,
             optical_depth_size: settings.optical_depth_size,
-            multiple_scattering_size: settings.multiple_scattering_size,
-            degree_count: settings.degree_count,
-            directions: Directions {
-                below: directions.below,
-                band: directions.band,
-                above: directions.above,
-                azimuths: directions.azimuths,
-            },
-            orders: settings.orders,
-            multiple_scattering: MultipleScattering::Harmonics,
+            multiple_scattering: MultipleScattering::SourceFunction,
+            source_size: settings.source_size,
+            source_grid: settings.source_grid,
+            source_orders: settings.orders,
+            // Thin air as well has tables.
+            skipping: Skipping::NONE,
             ..Self::of(Quality::Medium)
         }
     }
@@ -46,9 +41,8 @@ mod tests {
             let (pack, renderer) = (Settings::for_bake(&bake_settings(quality)), Settings::of(quality));
             assert_eq!(pack.nodes_per_leg, renderer.nodes_per_leg, "{quality}");
             assert_eq!(pack.optical_depth_size, renderer.optical_depth_size, "{quality}");
-            assert_eq!(pack.multiple_scattering_size, renderer.multiple_scattering_size, "{quality}");
-            assert_eq!(pack.directions, renderer.directions, "{quality}");
-            assert_eq!((pack.degree_count, pack.orders), (renderer.degree_count, renderer.orders), "{quality}");
+            assert_eq!((pack.source_size, pack.source_grid), (renderer.source_size, renderer.source_grid), "{quality}");
+            assert_eq!(pack.source_orders, renderer.source_orders, "{quality}");
         }
     }
 }

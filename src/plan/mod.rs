@@ -34,10 +34,11 @@ pub use named_settings::NamedSettings;
 pub use scene_traits::{SceneKind, SceneTraits};
 pub use sequence::{Moment, Sequence, follows, light_in_clouds_moved, pixel_of_block};
 use serde::Serialize;
-pub use settings::{Directions, Quadrature, Quality, Settings, SourceGrid, TableFormat, UnknownQuality};
+pub use settings::{Directions, Quadrature, Quality, Settings, TableFormat, UnknownQuality};
 pub use skipping::Skipping;
 pub use view::{OutOfView, SeenAltitudes};
 pub use volume_settings::VolumeSettings;
+pub use welkin_lut::bake::SourceGrid;
 
 /// Why a scene cannot be planned.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

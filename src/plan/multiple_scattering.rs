@@ -3,14 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use welkin_lut::{BAND_COUNT, Constituent, Planet};
+use welkin_lut::{BAND_COUNT, Constituent};
 
-use super::{Settings, SourceGrid};
-
-/// How far the Earth's air of 100 km reaches beyond the horizon, rad.
-const EARTHS_REACH_RAD: f64 = 0.177;
-/// So many times more directions in the low sky the largest planet gets.
-const MOST_LOW_DIRECTIONS: f64 = 2.0;
+use super::Settings;
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -143,28 +138,12 @@ impl Treatment {
     }
 }
 
-impl SourceGrid {
-    /// The same for a planet. Twilight glows within a few degrees of the horizon, the fewer the larger the planet is against
-    /// its air; directions lie at distances from the horizon that go as one over the square of their number.
-    pub fn on(self, planet: &Planet) -> Self {
-        let more = (EARTHS_REACH_RAD / planet.reach_rad()).sqrt().clamp(1.0, MOST_LOW_DIRECTIONS);
-        Self { low: (f64::from(self.low) * more).round() as u32, ..self }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use welkin_lut::Planet;
+
     use super::*;
     use crate::plan::Quality;
-
-    #[test]
-    fn the_low_sky_of_a_large_planet_gets_more_directions_and_that_of_the_earth_what_settings_say() {
-        let grid = Settings::of(Quality::High).source_grid;
-        let on = |radius_m| grid.on(&Planet { radius_m, atmosphere_height_m: 1e5, ground_albedo: [0.0; 3] });
-        assert_eq!((on(1e5), on(6.36e6)), (grid, grid));
-        assert_eq!(on(7e7), SourceGrid { low: 11, ..grid });
-        assert_eq!(on(1e12), SourceGrid { low: 12, ..grid });
-    }
 
     #[test]
     fn the_most_directions_fit_into_what_a_workgroup_shares() {

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use welkin_lut::bake::SourceGrid;
+
 use super::{CloudSettings, MultipleScattering, Skipping, VolumeSettings};
 
 /// How much accuracy a picture is worth. The error of each is measured in docs/accuracy.md.
@@ -77,40 +79,6 @@ impl Directions {
         self.cosines() * self.azimuths
     }
 }
-
-/// Directions in which the source function is tabulated: cosines in each part of the sphere, and azimuths.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct SourceGrid {
-    /// Below the horizon.
-    pub ground: u32,
-    /// From the horizon to the light.
-    pub low: u32,
-    /// From the light to the zenith.
-    pub high: u32,
-    /// On half a turn.
-    pub azimuths: u32,
-}
-
-impl SourceGrid {
-    /// All cosines.
-    pub fn cosines(&self) -> u32 {
-        self.ground + self.low + self.high
-    }
-
-    /// All directions.
-    pub fn count(&self) -> u32 {
-        self.cosines() * self.azimuths
-    }
-
-    /// Columns and rows of tiles in the table: one tile for each direction, and a row for the moments of the field, which may
-    /// be longer than the others.
-    pub fn tiles(&self) -> [u32; 2] {
-        [self.azimuths.max(MOMENT_TILES), self.cosines() + 1]
-    }
-}
-
-/// Irradiance, mean and five harmonics (`shaders/wgsl/source_grid.wgsl`).
-const MOMENT_TILES: u32 = 7;
 
 /// How tables are stored on the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

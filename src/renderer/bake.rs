@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use welkin_lut::bake::BakeSettings;
+use welkin_lut::bake::{BakeSettings, SourceTable};
 use welkin_lut::sky_tables::TableSet;
 use welkin_lut::{BAND_COUNT, Table};
 
@@ -14,37 +14,36 @@ use crate::probe::Orders;
 use crate::scene::{Direction, DirectionalLight, Light, Scene};
 
 /// The passes that a pack's tables come from, besides that of the scattered light.
-const BAKED: [&str; 3] = ["optical_depth", "first_order", "higher_order"];
+const BAKED: [&str; 3] = ["optical_depth", "first_source", "higher_source"];
 
 impl Renderer {
     /// The tables of a scene's air. Clouds, terrain and emission are not in them, nor is the scene's sun, for whose unit
-    /// irradiance they are.
+    /// irradiance they are. With them the source function, for who evaluates light between their texels.
     ///
     /// # Errors
     /// As [`Renderer::render`]; a table that is beyond the device.
-    pub fn bake(&mut self, scene: &Scene, settings: &BakeSettings) -> Result<TableSet, RenderError> {
+    pub fn bake(&mut self, scene: &Scene, settings: &BakeSettings) -> Result<(SourceTable, TableSet), RenderError> {
         let scene = air_alone(scene);
         let facts = Facts::new(&scene, Settings::for_bake(settings), Orders::All, Outputs::default())?;
         let passes: Vec<&Pass> = TABLES.iter().filter(|pass| BAKED.contains(&pass.declaration.name)).collect();
         self.execute_and("bake", &facts, &passes, |recording| {
             record_scattering_table(recording, &settings.scattering)
         })?;
-        let multiple_scattering = self.table("multiple_scattering_table")?;
+        let grid = facts.source_grid();
+        let source = SourceTable::from_tiles(grid, settings.source_size, &self.table("multiple_scattering_table")?);
         let set = TableSet {
             transmittance: self.table("optical_depth_table")?,
-            irradiance: multiple_scattering.slice(settings.coefficient_count()),
-            multiple_scattering,
+            irradiance: source.irradiance(),
+            multiple_scattering: source.moments().clone(),
             scattering: self.table("scattering_table")?,
         };
         self.resources.release("scattering_table");
-        Ok(set)
+        Ok((source, set))
     }
 
-    /// An image as a table; one that no pass has left has not been needed, and is dark.
+    /// An image that the passes have made, as a table.
     fn table(&self, name: &str) -> Result<Table, RenderError> {
-        let Some(image) = self.resources.existing_image(name) else {
-            return Ok(Table::new([1, 1, 1], vec![[0.0; BAND_COUNT]]));
-        };
+        let image = self.resources.existing_image(name).ok_or(RenderError::NothingToBake)?;
         let [width, height, depth] = image.shape().extent();
         let slices = if let ImageShape::D2Array(.., layers) = image.shape() { layers } else { depth };
         let texels: Vec<[f32; 4]> = self.gpu().read_image(image)?;

@@ -11,6 +11,8 @@ use welkin_wgpu_sky::{Camera, draw};
 const SIZE: [u32; 2] = [320, 180];
 /// Low enough that ground and horizon are in the picture.
 const ELEVATION_DEG: f32 = 11.5;
+/// Of the mean FLIP error: what docs/engines/README.md states.
+const BOUND: f64 = 0.02;
 
 /// The command, where Cargo puts it.
 fn welkin(arguments: &[&str]) -> serde_json::Value {
@@ -48,8 +50,8 @@ fn a_wgpu_program_draws_from_a_pack_what_welkin_renders() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (pack, file, rendered) = (place("pack"), place("scene.toml"), place("rendered.exr"));
-    // What docs/engines/README.md states; the sky of a low sun is farther off than what was asked for, 0.02.
-    for (sun_elevation_deg, bound) in [(60.0, 0.02), (5.0, 0.035)] {
+    let mut failed = false;
+    for sun_elevation_deg in [60.0, 30.0, 5.0, 0.0, -3.0] {
         fs::write(&file, scene(sun_elevation_deg)).unwrap();
         if !Path::new(&pack).exists() {
             welkin(&["bake", &file, "--out", &pack, "--format", "raw"]);
@@ -61,7 +63,7 @@ fn a_wgpu_program_draws_from_a_pack_what_welkin_renders() {
         let [x, y, z] = camera.sun;
         let wrong = flip(Path::new(&pack), &Camera { sun: [x, z, y], ..camera }, &rendered);
         println!("sun at {sun_elevation_deg}°: FLIP {found:.4}; with another axis up {wrong:.4}");
-        assert!(found <= bound, "sun at {sun_elevation_deg}°: {found}");
-        assert!(wrong > 10.0 * bound, "{wrong}");
+        failed |= found > BOUND || wrong < 5.0 * BOUND;
     }
+    assert!(!failed, "more than {BOUND}, or the control less than five times that");
 }

@@ -85,6 +85,18 @@ impl Air {
         self.scatterers().iter().map(|c| c.phase.lobes()).collect()
     }
 
+    /// Of each scatterer: the number of its density profile among those of all, counted as new ones appear.
+    pub(super) fn profile_groups(&self) -> Vec<usize> {
+        let mut profiles: Vec<DensityProfile> = Vec::new();
+        let mut number_of = |profile: &DensityProfile| {
+            profiles.iter().position(|other| other == profile).unwrap_or_else(|| {
+                profiles.push(*profile);
+                profiles.len() - 1
+            })
+        };
+        self.scatterers().iter().map(|constituent| number_of(&constituent.profile)).collect()
+    }
+
     /// Constituents whose density is a tent: altitude of its centre, half its width, m, and extinction at density 1.
     pub(super) fn tents(&self) -> impl Iterator<Item = (f64, f64, Bands)> {
         self.constituents.iter().filter_map(|constituent| match constituent.profile {

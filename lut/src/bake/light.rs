@@ -4,13 +4,15 @@ use std::f64::consts::PI;
 
 use crate::geometry::horizon_mu;
 use crate::mapping::{MultipleScatteringMapping, OpticalDepthMapping};
+use crate::phase::PhaseLobe;
 use crate::quadrature::{GaussNode, gauss_legendre};
 use crate::table::Table;
 use crate::{BAND_COUNT, Bands};
 
-use super::harmonics::{DEGREE_OF, MAX_DEGREES, harmonics};
-use super::ray::AirRay;
-use super::{Air, BakeSettings};
+use super::ray::{AirRay, Node};
+use super::source::SourceTable;
+use super::source_grid::GridNodes;
+use super::{Air, BakeSettings, MAX_SCATTERERS};
 
 /// Below this, light is dark; it keeps logarithms finite.
 pub(super) const DARK: f64 = 1e-30;
@@ -20,9 +22,11 @@ pub(super) struct Light<'a> {
     pub(super) air: &'a Air,
     pub(super) settings: BakeSettings,
     pub(super) rule: Vec<GaussNode>,
+    pub(super) grid: GridNodes,
+    /// Of each scatterer: its phase function, and the number of its density profile among those of all.
+    pub(super) phases: Vec<Vec<PhaseLobe>>,
+    pub(super) groups: Vec<usize>,
     optical_depth: Table,
-    /// χ_l of each scatterer.
-    moments: Vec<Vec<f64>>,
 }
 
 /// Light along one view ray, without what depends on the angle to the light alone.
@@ -36,14 +40,14 @@ pub(super) struct Integrals {
 
 impl<'a> Light<'a> {
     pub(super) fn new(air: &'a Air, settings: BakeSettings, optical_depth: Table) -> Self {
-        let degrees = settings.degree_count as usize;
-        let moments = |phase: &crate::PhaseFunction| (0..degrees).map(|l| phase.legendre_moment(l)).collect();
         Self {
             air,
             settings,
             rule: gauss_legendre(settings.nodes_per_leg as usize),
+            grid: GridNodes::new(settings.source_grid.on(air.planet())),
+            phases: air.phase_lobes(),
+            groups: air.profile_groups(),
             optical_depth,
-            moments: air.scatterers().iter().map(|c| moments(&c.phase)).collect(),
         }
     }
 
@@ -64,17 +68,16 @@ impl<'a> Light<'a> {
         }
     }
 
-    /// Light scattered once, or reflected once by the ground.
-    pub(super) fn first_order(&self, ray: AirRay) -> Bands {
+    /// Light scattered once, or reflected once by the ground, given each scatterer's phase function.
+    pub(super) fn first_order(&self, ray: AirRay, phases: &[f64]) -> Bands {
         let ray = ray.cut_at_shadow(self.air);
-        let phases: Vec<_> = self.air.scatterers().iter().map(|c| c.phase.value(ray.nu)).collect();
         let mut radiance = [0.0; BAND_COUNT];
         let whole = ray.walk(self.air, &self.rule, |node| {
             if node.dark {
                 return;
             }
             let light = self.optical_depth_to_top(node.altitude_m, node.mu_s);
-            for (b, phase) in self.air.scattering_per_m(node.altitude_m).zip(&phases) {
+            for (b, phase) in self.air.scattering_per_m(node.altitude_m).zip(phases) {
                 for band in 0..BAND_COUNT {
                     let transmittance = (-node.optical_depth[band] - light[band]).exp();
                     radiance[band] += node.weight_m * b[band] * phase * transmittance;
@@ -92,30 +95,29 @@ impl<'a> Light<'a> {
     }
 
     /// Light of one order more than a table holds.
-    pub(super) fn next_order(&self, table: &Table, ray: AirRay) -> Bands {
+    pub(super) fn next_order(&self, table: &SourceTable, ray: AirRay) -> Bands {
         let mut radiance = [0.0; BAND_COUNT];
         let whole = ray.walk(self.air, &self.rule, |node| {
-            let source = self.source(table, node.altitude_m, [node.mu, node.mu_s, node.cos_phi]);
+            let source = self.source(table, node);
             for band in 0..BAND_COUNT {
                 radiance[band] += node.weight_m * (-node.optical_depth[band]).exp() * source[band];
             }
         });
         if ray.hits_ground {
             let unit = MultipleScatteringMapping::new(self.air.planet()).unit(0.0, ray.ground_mu_s(self.air));
-            let irradiance = table.at_unit(unit, self.settings.coefficient_count()).map(f64::exp);
-            self.add_ground(&mut radiance, whole, irradiance);
+            self.add_ground(&mut radiance, whole, table.irradiance_at(table.place(unit)));
         }
         radiance
     }
 
     /// What a view ray's tables hold of it.
-    pub(super) fn integrals(&self, table: &Table, ray: AirRay, rule: &[GaussNode]) -> Integrals {
+    pub(super) fn integrals(&self, table: &SourceTable, ray: AirRay, rule: &[GaussNode]) -> Integrals {
         let ray = ray.cut_at_shadow(self.air);
         let mut multiple = [0.0; BAND_COUNT];
         let mut single = vec![[0.0; BAND_COUNT]; self.air.scatterers().len()];
         ray.walk(self.air, rule, |node| {
             let transmittance = node.optical_depth.map(|tau| (-tau).exp());
-            let source = self.source(table, node.altitude_m, [node.mu, node.mu_s, node.cos_phi]);
+            let source = self.source(table, node);
             for band in 0..BAND_COUNT {
                 multiple[band] += node.weight_m * transmittance[band] * source[band];
             }
@@ -133,22 +135,16 @@ impl<'a> Light<'a> {
     }
 
     /// Radiance sent into the view direction per metre: Σ b_c ∫p_c I dω'.
-    fn source(&self, table: &Table, altitude_m: f64, [mu, mu_s, cos_phi]: [f64; 3]) -> Bands {
-        let unit = MultipleScatteringMapping::new(self.air.planet()).unit(altitude_m, mu_s);
-        let y = harmonics(mu, cos_phi, self.settings.degree_count);
-        let mut by_degree = [[0.0; BAND_COUNT]; MAX_DEGREES];
-        for (b, moments) in self.air.scattering_per_m(altitude_m).zip(&self.moments) {
-            for (sum, chi) in by_degree.iter_mut().zip(moments) {
-                (0..BAND_COUNT).for_each(|band| sum[band] += chi * b[band]);
-            }
+    fn source(&self, table: &SourceTable, node: &Node) -> Bands {
+        let unit = MultipleScatteringMapping::new(self.air.planet()).unit(node.altitude_m, node.mu_s);
+        let corners = self.grid.at(self.horizon_mu(node.altitude_m), node.mu_s).corners(node.mu, node.cos_phi);
+        let (mut source, place) = ([0.0; BAND_COUNT], table.place(unit));
+        let mut found: [Option<Bands>; MAX_SCATTERERS] = [None; MAX_SCATTERERS];
+        for (b, &group) in self.air.scattering_per_m(node.altitude_m).zip(&self.groups) {
+            let light = *found[group].get_or_insert_with(|| table.at(group, place, &corners));
+            (0..BAND_COUNT).for_each(|band| source[band] += b[band] * light[band]);
         }
-        let mut relative = by_degree[0].map(|b| b * y[0]);
-        for k in 1..self.settings.coefficient_count() as usize {
-            let (coefficient, scattering) = (table.at_unit(unit, k as u32), by_degree[DEGREE_OF[k]]);
-            (0..BAND_COUNT).for_each(|band| relative[band] += scattering[band] * y[k] * coefficient[band]);
-        }
-        let mean = table.at_unit(unit, 0);
-        std::array::from_fn(|band| relative[band].max(0.0) * mean[band].exp())
+        source
     }
 
     /// Cosine of the horizon's zenith angle at an altitude.

@@ -13,6 +13,7 @@ use crate::{BAND_COUNT, Bands};
 use super::Baked;
 use super::light::Light;
 use super::ray::AirRay;
+use super::source::SourceTable;
 
 /// Light per metre below which all is night: over the longest ray a hundredth of the natural night sky. A floor much lower
 /// would stand so far from lit texels, in logarithms, that a filter's rounding between them were seen.
@@ -26,7 +27,7 @@ fn table_altitude_m(altitude_m: f64, top_m: f64) -> f64 {
 
 impl Light<'_> {
     /// Multiply scattered radiance, then each scatterer's light, over the length of air: ln of 1/(m sr), and of 1/m.
-    fn layers(&self, table: &Table, ray: AirRay, nodes: &[GaussNode]) -> Vec<Bands> {
+    fn layers(&self, table: &SourceTable, ray: AirRay, nodes: &[GaussNode]) -> Vec<Bands> {
         let planet = self.air.planet();
         let (radius_m, top_m) = (planet.radius_m, planet.atmosphere_height_m);
         let length_m = air_length_m(radius_m, top_m, ray.altitude_m, ray.mu, ray.hits_ground).max(1e-3);
@@ -35,7 +36,7 @@ impl Light<'_> {
         all.map(|light| light.map(|value| (value / length_m).max(NIGHT).ln())).collect()
     }
 
-    pub(super) fn scattering_table(&self, multiple: &Table, progress: &(dyn Fn(f64) + Sync)) -> Table {
+    pub(super) fn scattering_table(&self, source: &SourceTable, progress: &(dyn Fn(f64) + Sync)) -> Table {
         let size = self.settings.scattering;
         let layers = 1 + self.air.scatterers().len();
         let row_length = (size.azimuths * size.suns) as usize;
@@ -47,7 +48,7 @@ impl Light<'_> {
         let computed: Vec<Vec<Vec<Bands>>> = rows
             .par_iter()
             .map(|&(half, slice, y)| {
-                let row = (0..row_length as u32).map(|x| self.texel(multiple, half, slice, [x, y])).collect();
+                let row = (0..row_length as u32).map(|x| self.texel(source, half, slice, [x, y])).collect();
                 let done = finished.fetch_add(1, Ordering::Relaxed) + 1;
                 if done.is_multiple_of(64) {
                     progress(f64::from(done) / rows.len() as f64);
@@ -66,7 +67,7 @@ impl Light<'_> {
         Table::new([size.azimuths * size.suns, size.elevations, slices], texels)
     }
 
-    fn texel(&self, multiple: &Table, half: u32, slice: u32, [x, y]: [u32; 2]) -> Vec<Bands> {
+    fn texel(&self, source: &SourceTable, half: u32, slice: u32, [x, y]: [u32; 2]) -> Vec<Bands> {
         let size = self.settings.scattering;
         let light_unit = unit_from_texel([x % size.suns, slice], [size.suns, size.altitudes]);
         let [altitude_m, mu_s] = MultipleScatteringMapping::new(self.air.planet()).parameters(light_unit);
@@ -77,7 +78,7 @@ impl Light<'_> {
         let [zenith_rad, azimuth_rad] = mapping.parameters(view_unit, half);
         let (mu, cos_phi) = (zenith_rad.cos(), azimuth_rad.cos());
         let ray = AirRay::along(self.air, altitude_m, mu_s, mu, cos_phi, half == SkyHalf::Ground);
-        self.layers(multiple, ray, &self.rule)
+        self.layers(source, ray, &self.rule)
     }
 }
 
@@ -89,7 +90,7 @@ impl Baked<'_> {
         let altitude_m = table_altitude_m(altitude_m, light.top_m());
         let ray = AirRay::new(light.air, altitude_m, [mu, mu_s, nu], mu < light.horizon_mu(altitude_m));
         let nodes = gauss_legendre(2 * light.settings.nodes_per_leg as usize);
-        let integrals = light.integrals(&self.tables.set().multiple_scattering, ray, &nodes);
+        let integrals = light.integrals(&self.source, ray, &nodes);
         let mut radiance = integrals.multiple;
         for (single, scatterer) in integrals.single.iter().zip(light.air.scatterers()) {
             let phase = scatterer.phase.value(nu);

@@ -19,6 +19,15 @@ pub fn texture_coordinate(unit: [f64; 2], size: [u32; 2]) -> [f64; 2] {
     std::array::from_fn(|i| (unit[i] * f64::from(size[i] - 1) + 0.5) / f64::from(size[i]))
 }
 
+/// Keeps a filter inside its tile or block, in texels.
+const TILE_MARGIN: f64 = 0.002;
+
+/// From a unit coordinate to a place in a tile of so many texels, from the centre of its first.
+pub(crate) fn inside_tile(unit: f64, count: u32) -> f64 {
+    let last = f64::from(count - 1);
+    (unit * last).clamp(TILE_MARGIN, last - TILE_MARGIN)
+}
+
 /// Unit coordinates of a texel's centre; a table of one texel in a direction stands for 0.
 pub fn unit_from_texel(texel: [u32; 2], size: [u32; 2]) -> [f64; 2] {
     std::array::from_fn(|i| f64::from(texel[i]) / f64::from(size[i] - 1).max(1.0))

@@ -12,7 +12,7 @@ use crate::sky_tables::SkyTables;
 use crate::{BAND_COUNT, Bands, Planet};
 
 /// Version of the format that is written and read. It changes when something that a reader relies on does.
-pub const PACK_VERSION: u32 = 1;
+pub const PACK_VERSION: u32 = 2;
 
 /// What `format` says in every manifest.
 pub const PACK_FORMAT: &str = "welkin-pack";
@@ -152,9 +152,7 @@ pub struct Method {
     pub backend: String,
     /// Gauss-Legendre nodes on each leg of a ray.
     pub nodes_per_leg: u32,
-    /// Degrees of spherical harmonics of the multiply scattered field.
-    pub degree_count: u32,
-    /// Directions in which the field is sampled.
+    /// Directions in which the source function of multiply scattered light is tabulated.
     pub direction_count: u32,
     /// Orders of scattering one by one; the rest of the series is geometric.
     pub orders: u32,
@@ -301,13 +299,11 @@ impl SkyParameters {
 }
 
 impl Method {
-    pub(super) fn new(backend: &str, settings: &BakeSettings) -> Self {
-        let directions = settings.directions;
+    pub(super) fn new(backend: &str, settings: &BakeSettings, planet: &Planet) -> Self {
         Self {
             backend: backend.to_owned(),
             nodes_per_leg: settings.nodes_per_leg,
-            degree_count: settings.degree_count,
-            direction_count: (directions.below + directions.band + directions.above) * directions.azimuths,
+            direction_count: settings.source_grid.on(planet).count(),
             orders: settings.orders,
         }
     }
@@ -398,7 +394,7 @@ impl Manifest {
             wavelengths_nm: description.wavelengths_nm,
             sun: description.sun,
             sky_parameters: SkyParameters::new(tables, &description.scatterers),
-            method: Method::new(&description.backend, settings),
+            method: Method::new(&description.backend, settings, tables.planet()),
             tables: Vec::new(),
             files: Vec::new(),
         }

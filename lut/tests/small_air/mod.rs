@@ -1,6 +1,6 @@
 //! An Earth with tables small enough for tests.
 
-use welkin_lut::bake::{Air, BakeSettings, Baked, Directions, ScatteringSize};
+use welkin_lut::bake::{Air, BakeSettings, Baked, ScatteringSize, SourceGrid};
 use welkin_lut::pack::{Description, Sun};
 use welkin_lut::{Constituent, DensityProfile, Medium, PhaseFunction, Planet};
 
@@ -8,9 +8,8 @@ use welkin_lut::{Constituent, DensityProfile, Medium, PhaseFunction, Planet};
 pub const SMALL: BakeSettings = BakeSettings {
     nodes_per_leg: 6,
     optical_depth_size: [40, 16],
-    multiple_scattering_size: [16, 8],
-    degree_count: 3,
-    directions: Directions { below: 2, band: 2, above: 3, azimuths: 4 },
+    source_size: [16, 8],
+    source_grid: SourceGrid { ground: 2, low: 3, high: 3, azimuths: 4 },
     orders: 3,
     scattering: ScatteringSize { azimuths: 4, suns: 12, elevations: 14, altitudes: 6 },
 };
