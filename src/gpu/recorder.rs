@@ -1,8 +1,10 @@
 //! Records dispatches, puts the barriers between them, and runs them.
 
+mod handing_over;
+mod pieces;
+
 use std::collections::HashMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 use ash::vk;
 
@@ -12,7 +14,7 @@ use super::command_list::CommandList;
 use super::context::{Context, lock};
 use super::descriptors::Descriptors;
 use super::error::GpuError;
-use super::image::{GpuImage, NextUse};
+use super::image::GpuImage;
 use super::pace::{Pace, Piece};
 use super::pipeline::Pipeline;
 use super::resource::{self, Bound, Resource};
@@ -216,59 +218,6 @@ impl Commands {
         unsafe { self.context.device.cmd_fill_buffer(self.list.raw, buffer.0.raw, 0, vk::WHOLE_SIZE, 0) };
     }
 
-    /// Puts an image that the recording has written into the layout for what others do with it next.
-    pub fn leave_for(&mut self, image: &GpuImage, next: NextUse) {
-        let barrier =
-            self.state(Resource::Image(image)).and_then(|state| state.next(Use::read_by_others(next.layout())));
-        let mut barriers = Barriers::default();
-        if let Some(barrier) = barrier {
-            barriers.image(image.0.raw, image.0.aspects(), barrier);
-        }
-        barriers.record(&self.context.device, self.list.raw);
-    }
-
-    /// Records a dispatch, and submits whenever a piece is full.
-    fn record_in_pieces(
-        &mut self,
-        pace: &Pace,
-        label: &str,
-        pipeline: &Pipeline,
-        descriptors: Option<&Descriptors>,
-        workgroups: [u32; 3],
-    ) -> Result<(), GpuError> {
-        let axis = (0..3).max_by_key(|&axis| workgroups[axis]).unwrap_or(0);
-        let row_workgroups = workgroups.iter().map(|&n| u64::from(n)).product::<u64>() / u64::from(workgroups[axis]);
-        let mut from = 0;
-        while from < workgroups[axis] {
-            let portion = pace.portion(label, &self.piece, [workgroups[axis] - from, workgroups[axis]], row_workgroups);
-            let (mut base, mut count) = ([0; 3], workgroups);
-            (base[axis], count[axis]) = (from, portion.rows);
-            self.record_portion(label, pipeline, descriptors, Portion::From { base, count })?;
-            self.piece.add(label, u64::from(portion.rows) * row_workgroups, portion.milliseconds);
-            from += portion.rows;
-            if portion.ends_piece {
-                self.finish_piece(pace)?;
-                self.restart()?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Runs a piece and learns how long it took.
-    fn finish_piece(&mut self, pace: &Pace) -> Result<(), GpuError> {
-        if pace.is_stopped() {
-            return Err(GpuError::Stopped(self.label.clone()));
-        }
-        let started = Instant::now();
-        self.flush()?;
-        let (piece, took) = (std::mem::take(&mut self.piece), started.elapsed());
-        if self.clock == Some(Clock::Host) {
-            self.piece_times.extend(piece.times(took));
-        }
-        pace.learn(&piece, took);
-        Ok(())
-    }
-
     fn record_portion(
         &mut self,
         label: &str,
@@ -424,34 +373,6 @@ impl Commands {
         self.list.restart()?;
         self.context.begin_label(self.list.raw, &self.label);
         Ok(())
-    }
-
-    /// Starts from what somebody else has done to an image.
-    pub(super) fn take_over(&mut self, image: &GpuImage, last: Use) {
-        self.images.insert(image.0.raw, (image.clone(), State::left_by(last)));
-    }
-
-    /// Makes an image ready for what somebody else does with it, or leaves it as it is; says how that is.
-    pub(super) fn hand_back(&mut self, image: &GpuImage, next: Option<Use>) -> Use {
-        let mut barriers = Barriers::default();
-        let aspects = image.0.aspects();
-        let Some(state) = self.state(Resource::Image(image)) else { return Use::default() };
-        let barrier = next.and_then(|next| state.next(next));
-        let left = next.unwrap_or_else(|| state.last_use());
-        if let Some(barrier) = barrier {
-            barriers.image(image.0.raw, aspects, barrier);
-        }
-        barriers.record(&self.context.device, self.list.raw);
-        left
-    }
-
-    /// Ends a recording into a host's command buffer; what the device will use must be kept until it has.
-    pub(super) fn hand_over(mut self) -> (Kept, Vec<GpuImage>, Vec<GpuBuffer>) {
-        self.context.end_label(self.list.raw);
-        self.note_states();
-        let images = std::mem::take(&mut self.images).into_values().map(|(image, _)| image).collect();
-        let buffers = std::mem::take(&mut self.buffers).into_values().map(|(buffer, _)| buffer).collect();
-        (std::mem::take(&mut self.kept), images, buffers)
     }
 
     /// Runs the list and notes what it has done to its resources.

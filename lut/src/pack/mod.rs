@@ -11,7 +11,9 @@ mod manifest;
 mod measure;
 mod probes;
 mod read;
+mod sky_block;
 mod texels;
+mod wording;
 mod write;
 
 pub use error::PackError;

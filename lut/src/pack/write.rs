@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use super::folder::WholeFolder;
-use super::manifest::{FileEntry, Manifest, Sun, TableEntry, TableFile, UNHASHED, uniform_block};
+use super::manifest::{FileEntry, Manifest, Sun, TableEntry, TableFile, UNHASHED};
 use super::measure::measure;
 use super::probes::Probes;
+use super::sky_block::uniform_block;
 use super::{FileFormat, PackError, Precision, sha256};
 use crate::Bands;
 use crate::bake::Baked;
