@@ -22,22 +22,10 @@ pub trait DensityField: std::fmt::Debug + Send + Sync {
     /// Density at a point, at least 0.
     fn density(&self, p: DVec3) -> f64;
 
-    /// The first stretch of the ray from `p` along the unit vector `d` at or after the distance `from_m`, which lies
-    /// inside the bounds, in which one majorant holds: (its end m, its majorant). The end must lie beyond `from_m`.
-    fn stretch(&self, p: DVec3, d: DVec3, from_m: f64) -> (f64, f64);
-
-    /// Calls `visit` with the end (m) and the majorant of one stretch of a ray after the other, from one distance inside
-    /// the bounds to another, until it says false. Fields that can walk from stretch to stretch do better than this.
-    fn march(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64, visit: &mut dyn FnMut(f64, f64) -> bool) {
-        let mut t = from_m;
-        while t < to_m {
-            let (end_m, majorant) = self.stretch(p, d, t);
-            if !visit(end_m.min(to_m), majorant) {
-                return;
-            }
-            t = end_m;
-        }
-    }
+    /// Calls `visit` with the end (m) and the majorant of one stretch of the ray from `p` along the unit vector `d` after the
+    /// other, from one distance inside the bounds to another, until it says false. Only a stretch that does not start where
+    /// the walk did may be empty.
+    fn march(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64, visit: &mut dyn FnMut(f64, f64) -> bool);
 
     /// A length over which the density changes little, m: where deterministic integration starts to subdivide.
     fn detail_m(&self) -> f64;

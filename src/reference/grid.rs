@@ -220,15 +220,6 @@ impl DensityField for GridField {
         mix(along_y(first), along_y(first + next_z), share.z)
     }
 
-    fn stretch(&self, p: DVec3, d: DVec3, from_m: f64) -> (f64, f64) {
-        let mut first = (from_m, 0.0);
-        self.march(p, d, from_m, f64::INFINITY, &mut |end_m, majorant| {
-            first = (end_m, majorant);
-            end_m <= from_m
-        });
-        first
-    }
-
     /// From cell to cell (Amanatides & Woo 1987); faces are computed from their numbers, so that nothing drifts.
     fn march(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64, visit: &mut dyn FnMut(f64, f64) -> bool) {
         let [cx, cy, cz] = self.coarse_size.map(|n| n as i32);
@@ -285,15 +276,16 @@ mod tests {
             let d = (DVec3::new((5.0 * f).cos(), f.sin(), 0.3 * (7.0 * f).sin()) - 0.3 * p).normalize();
             let Some((start, end)) = clip(p, d, grid.min_m, grid.max_m()) else { continue };
             let mut t = start;
-            while t < end {
-                let (stretch_end, majorant) = grid.stretch(p, d, t);
-                assert!(stretch_end > t);
+            grid.march(p, d, start, end, &mut |stretch_end, majorant| {
+                assert!(stretch_end >= t);
                 for k in 0..=10 {
-                    let density = grid.density(p + d * (t + (stretch_end.min(end) - t) * f64::from(k) / 10.0));
+                    let density = grid.density(p + d * (t + (stretch_end - t) * f64::from(k) / 10.0));
                     assert!(density <= majorant * (1.0 + 1e-6) + 1e-6, "{density} above {majorant}");
                 }
                 t = stretch_end;
-            }
+                true
+            });
+            assert_eq!(t, end);
         }
     }
 

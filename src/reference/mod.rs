@@ -17,6 +17,7 @@ mod field;
 mod first_event;
 mod grid;
 mod guide;
+mod layer;
 mod light;
 mod line;
 mod line_event;

@@ -8,6 +8,8 @@ use welkin_lut::volume::{Volume, VolumeField, VolumeForm, VolumeParameters};
 
 use super::field::{Body, DensityField};
 use super::grid::GridField;
+use super::layer::Layer;
+use super::line::Line;
 use super::matter::Matter;
 use super::shape::{Shape, clip};
 use super::spectrum;
@@ -56,9 +58,7 @@ impl Filled {
 #[derive(Debug)]
 struct FogShell {
     filled: Filled,
-    shape: Shape,
-    bottom_m: f64,
-    top_m: f64,
+    layer: Layer,
     /// Change of altitude within which one majorant holds, m.
     slab_m: f64,
 }
@@ -75,66 +75,36 @@ impl FogShell {
         let per_scale_height = f64::from(filled.parameters.per_scale_height);
         let slab_m = if per_scale_height > 0.0 { 0.25 / per_scale_height } else { top_m - bottom_m };
         let shape = Shape::Sphere { radius_m: filled.radius_m, height_m: top_m };
-        Some(Self { filled, shape, bottom_m, top_m, slab_m })
+        Some(Self { filled, layer: Layer { shape, base_m: bottom_m, top_m, beyond_m: BEYOND_M }, slab_m })
     }
 
     /// The largest density from an altitude up.
     fn majorant(&self, lowest_m: f64) -> f64 {
-        (-(lowest_m - self.bottom_m).max(0.0) * f64::from(self.filled.parameters.per_scale_height)).exp()
+        (-(lowest_m - self.layer.base_m).max(0.0) * f64::from(self.filled.parameters.per_scale_height)).exp()
     }
 }
 
 impl DensityField for FogShell {
     fn bounds_m(&self) -> (DVec3, DVec3) {
-        let outer = self.filled.radius_m + self.top_m;
-        let centre = DVec3::new(0.0, 0.0, -self.filled.radius_m);
-        (centre - DVec3::splat(outer), centre + DVec3::splat(outer))
+        self.layer.bounds_m(self.filled.radius_m)
     }
 
     fn density(&self, p: DVec3) -> f64 {
-        self.filled.density(p, self.shape.altitude(p))
-    }
-
-    fn stretch(&self, p: DVec3, d: DVec3, from_m: f64) -> (f64, f64) {
-        let mut first = (from_m, 0.0);
-        self.march(p, d, from_m, f64::INFINITY, &mut |end_m, majorant| {
-            first = (end_m, majorant);
-            end_m <= from_m
-        });
-        first
+        self.filled.density(p, self.layer.shape.altitude(p))
     }
 
     fn march(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64, visit: &mut dyn FnMut(f64, f64) -> bool) {
-        let line = self.shape.line(p, d);
-        let crossings =
-            [line.fall(self.top_m), line.fall(self.bottom_m), line.rise(self.bottom_m), line.rise(self.top_m)];
-        let next = |t: f64| {
-            crossings.iter().flatten().copied().filter(|&cut| cut > t + BEYOND_M).fold(f64::INFINITY, f64::min)
-        };
-        let mut t = from_m;
-        while t < to_m {
-            let cut = next(t);
-            let ahead = line.altitude(if cut.is_finite() { 0.5 * (t + cut) } else { t + BEYOND_M });
-            if !(self.bottom_m..=self.top_m).contains(&ahead) {
-                if !visit(cut.min(to_m), 0.0) {
-                    return;
-                }
-                t = cut;
-                continue;
-            }
-            // Halved until the altitude, which is convex along a line, stays within a slab of where it starts.
+        // Halved until the altitude, which is convex along a line, stays within a slab of where it starts.
+        let inside = |line: &Line, t: f64, cut: f64| {
             let mut length = (LONGEST_SLABS * self.slab_m).min(cut - t);
             let start_m = line.altitude(t);
             while length > self.slab_m && (line.altitude(t + length) - start_m).abs() > self.slab_m {
                 length *= 0.5;
             }
             let lowest = line.altitude(line.lowest().clamp(t, t + length));
-            let end = if length >= cut - t { cut } else { t + length };
-            if !visit(end.min(to_m), self.majorant(lowest)) {
-                return;
-            }
-            t = end;
-        }
+            (if length >= cut - t { cut } else { t + length }, self.majorant(lowest))
+        };
+        self.layer.march([p, d], [from_m, to_m], inside, visit);
     }
 
     fn detail_m(&self) -> f64 {
@@ -202,15 +172,6 @@ impl DensityField for LocalVolume {
 
     fn density(&self, p: DVec3) -> f64 {
         self.filled.density(p, 0.0)
-    }
-
-    fn stretch(&self, p: DVec3, d: DVec3, from_m: f64) -> (f64, f64) {
-        let mut first = (from_m, 0.0);
-        self.march(p, d, from_m, f64::INFINITY, &mut |end_m, majorant| {
-            first = (end_m, majorant);
-            end_m <= from_m
-        });
-        first
     }
 
     fn march(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64, visit: &mut dyn FnMut(f64, f64) -> bool) {
