@@ -4,25 +4,14 @@ mod common;
 #[path = "reference/segments.rs"]
 mod segments;
 
+use common::with_renderer;
 use segments::{Errors, rays, scene, white_surface};
 use welkin::foreground::{Depth, Foreground};
-use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{Decision, Outputs, Quality, Settings};
 use welkin::probe::{Orders, Ray};
 use welkin::reference::{self, Effort};
-use welkin::renderer::{Rendered, Renderer};
+use welkin::renderer::Rendered;
 use welkin::scene::Scene;
-
-/// Runs a test on a renderer under validation, of which a single message fails it.
-fn with_renderer(test: impl FnOnce(&mut Renderer)) {
-    let _alone = common::alone();
-    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
-    let mut renderer = Renderer::new(&request).unwrap();
-    let log = renderer.gpu().validation_log();
-    test(&mut renderer);
-    drop(renderer);
-    assert!(log.messages().is_empty(), "{:?}", log.messages());
-}
 
 #[test]
 fn light_and_transmittance_up_to_a_distance_are_those_of_quadrature() {

@@ -5,14 +5,13 @@ mod json_schema;
 #[path = "../lut/tests/small_air/mod.rs"]
 mod small_air;
 
+use common::with_renderer;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
 use small_air::SMALL;
 use welkin::bake::{air_of, bake_on_device, describe};
-use welkin::gpu::{DeviceRequest, Validation};
-use welkin::renderer::Renderer;
 use welkin::scene::Scene;
 use welkin_lut::Table;
 use welkin_lut::bake::Baked;
@@ -20,17 +19,6 @@ use welkin_lut::sky_tables::TableSet;
 
 fn scene(name: &str) -> Scene {
     Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)).unwrap()
-}
-
-/// Runs a test on a renderer under validation, of which a single message fails it.
-fn with_renderer(test: impl FnOnce(&mut Renderer)) {
-    let _alone = common::alone();
-    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
-    let mut renderer = Renderer::new(&request).unwrap();
-    let log = renderer.gpu().validation_log();
-    test(&mut renderer);
-    drop(renderer);
-    assert!(log.messages().is_empty(), "{:?}", log.messages());
 }
 
 /// Irradiance of moonlight, and light per metre that makes a millionth of the sun's over a hundred kilometres: ln.

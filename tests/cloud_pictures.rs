@@ -2,12 +2,12 @@
 
 mod common;
 
+use common::with_renderer;
 use std::path::Path;
 
 use glam::DVec3;
 use welkin::foreground::{Depth, Foreground};
 use welkin::frame::Frame;
-use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{CloudScattering, CloudSettings, Decision, Outputs, Plan, Quality, Settings, Skipping};
 use welkin::reference::{World, transport};
 use welkin::renderer::{Rendered, Renderer};
@@ -38,18 +38,6 @@ fn settings() -> Settings {
         ..CloudSettings::of(Quality::Low)
     };
     Settings { clouds, ..Settings::of(Quality::Low) }
-}
-
-/// Does something with a renderer that the validation layer watches.
-fn with_renderer<T>(work: impl FnOnce(&mut Renderer) -> T) -> T {
-    let _alone = common::alone();
-    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
-    let mut renderer = Renderer::new(&request).unwrap();
-    let log = renderer.gpu().validation_log();
-    let done = work(&mut renderer);
-    drop(renderer);
-    assert!(log.messages().is_empty(), "{:?}", log.messages());
-    done
 }
 
 fn render(scenes: &[Scene], settings: Settings) -> Vec<Rendered> {

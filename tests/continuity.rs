@@ -5,25 +5,15 @@ mod common;
 #[path = "continuity/mod.rs"]
 mod paths;
 
+use common::with_renderer;
 use std::ops::Range;
 
 use paths::{Picture, altitudes_m, evenly, pictures, scene, set_sun, with_pop, worst_of_each_step};
-use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{Quality, Settings};
 use welkin::renderer::Renderer;
 use welkin::scene::Scene;
 
 const STEPS: usize = 1000;
-
-fn with_renderer(test: impl FnOnce(&mut Renderer)) {
-    let _alone = common::alone();
-    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
-    let mut renderer = Renderer::new(&request).unwrap();
-    let log = renderer.gpu().validation_log();
-    test(&mut renderer);
-    drop(renderer);
-    assert!(log.messages().is_empty(), "{:?}", log.messages());
-}
 
 /// Pictures on a stretch of a path of a thousand steps.
 fn stretch(

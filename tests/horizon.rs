@@ -5,10 +5,10 @@ mod common;
 #[path = "continuity/mod.rs"]
 mod paths;
 
+use common::with_renderer;
 use std::f64::consts::PI;
 
 use paths::scene;
-use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{Outputs, Quality, Settings};
 use welkin::probe::{Orders, Ray, RayRadiance};
 use welkin::reference::{self, Effort};
@@ -17,16 +17,6 @@ use welkin_lut::mapping::SkyViewMapping;
 
 const ALTITUDES_M: [f64; 5] = [2.0, 1_000.0, 10_000.0, 100_000.0, 400_000.0];
 const SUNS_DEG: [f64; 3] = [60.0, 3.0, -4.0];
-
-fn with_renderer(test: impl FnOnce(&mut Renderer)) {
-    let _alone = common::alone();
-    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
-    let mut renderer = Renderer::new(&request).unwrap();
-    let log = renderer.gpu().validation_log();
-    test(&mut renderer);
-    drop(renderer);
-    assert!(log.messages().is_empty(), "{:?}", log.messages());
-}
 
 /// Columns of a picture half a degree high whose middle lies on the horizon: for each column and band, from above.
 fn columns_across_the_horizon(renderer: &mut Renderer, sun_deg: f64, altitude_m: f64) -> Vec<Vec<f64>> {

@@ -7,26 +7,15 @@ mod sky;
 #[path = "reference/tables.rs"]
 mod tables;
 
+use common::with_renderer;
 use std::ops::RangeInclusive;
 
 use sky::{Errors, answers, errors, scene};
 use tables::Row;
-use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{Quality, Settings};
 use welkin::probe::{Orders, Ray};
 use welkin::renderer::Renderer;
 use welkin::scene::Scene;
-
-/// Runs a test on a renderer under validation, of which a single message fails it.
-fn with_renderer(test: impl FnOnce(&mut Renderer)) {
-    let _alone = common::alone();
-    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
-    let mut renderer = Renderer::new(&request).unwrap();
-    let log = renderer.gpu().validation_log();
-    test(&mut renderer);
-    drop(renderer);
-    assert!(log.messages().is_empty(), "{:?}", log.messages());
-}
 
 /// Bounds in per cent: median and 99th percentile up to a sun of 90°, and the 99th percentile of ranges of lower suns.
 struct Bounds<'a> {

@@ -3,27 +3,18 @@
 mod common;
 mod hard_cases;
 
+use common::with_renderer;
 use std::path::Path;
 
 use hard_cases::judge::{Judgement, judge, judge_picture, render};
 use hard_cases::{Case, all, furnace, named, truth};
-use welkin::gpu::{DeviceRequest, Gpu, Validation};
+use welkin::gpu::{DeviceRequest, Gpu};
 use welkin::passes::ShaderSources;
 use welkin::plan::{MultipleScattering, Quality, Settings};
 use welkin::renderer::Renderer;
 
 /// Walks of each compared pixel: a standard error of a few per cent.
 const WALKS: u64 = 512;
-
-fn with_renderer(test: impl FnOnce(&mut Renderer)) {
-    let _alone = common::alone();
-    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
-    let mut renderer = Renderer::new(&request).unwrap();
-    let log = renderer.gpu().validation_log();
-    test(&mut renderer);
-    drop(renderer);
-    assert!(log.messages().is_empty(), "{:?}", log.messages());
-}
 
 /// The cases that are held to the path tracer too.
 fn few() -> impl Iterator<Item = Case> {

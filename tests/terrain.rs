@@ -6,10 +6,8 @@ use std::path::Path;
 
 use glam::DVec3;
 use welkin::frame::Frame;
-use welkin::gpu::{DeviceRequest, Validation};
 use welkin::plan::{Outputs, Quality, Settings};
 use welkin::reference::World;
-use welkin::renderer::Renderer;
 use welkin::scene::Scene;
 use welkin_lut::height_field::HeightField;
 
@@ -17,13 +15,9 @@ const CAPTURE: Outputs = Outputs { capture: true, picture: false };
 
 /// Runs a test on a renderer under validation, of which a single message fails it.
 fn with_renderer(test: impl FnOnce(&mut dyn FnMut(&Scene) -> Frame)) {
-    let _alone = common::alone();
-    let request = DeviceRequest { validation: Validation::On, ..DeviceRequest::default() };
-    let mut renderer = Renderer::new(&request).unwrap();
-    let log = renderer.gpu().validation_log();
-    test(&mut |scene| renderer.render(scene, Settings::of(Quality::Low), CAPTURE).unwrap().frame);
-    drop(renderer);
-    assert!(log.messages().is_empty(), "{:?}", log.messages());
+    common::with_renderer(|renderer| {
+        test(&mut |scene| renderer.render(scene, Settings::of(Quality::Low), CAPTURE).unwrap().frame);
+    });
 }
 
 /// The mountains of the gallery in a picture of so many pixels.

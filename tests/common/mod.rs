@@ -3,6 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use welkin::gpu::{DeviceRequest, Gpu, Validation, ValidationLog};
+use welkin::renderer::Renderer;
 
 /// One device at a time: the validation layer's state and the processor's threads are shared by all of them.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
@@ -33,4 +34,15 @@ pub fn with_gpu(test: impl FnOnce(&Gpu)) {
     drop(gpu);
     let messages: Vec<String> = log.messages().iter().map(ToString::to_string).collect();
     assert!(messages.is_empty(), "the validation layer complains:\n{}", messages.join("\n"));
+}
+
+/// Does something with a renderer that the validation layer watches: see [`with_gpu`].
+#[allow(dead_code)]
+pub fn with_renderer<T>(work: impl FnOnce(&mut Renderer) -> T) -> T {
+    let mut done = None;
+    with_gpu(|gpu| {
+        let mut renderer = Renderer::on(gpu.clone()).unwrap_or_else(|error| panic!("{error}"));
+        done = Some(work(&mut renderer));
+    });
+    done.expect("it was called")
 }
