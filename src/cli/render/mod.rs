@@ -4,7 +4,9 @@ mod frames;
 mod gpu;
 mod reference;
 
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::thread::{self, ScopedJoinHandle};
 
 use clap::Args;
 use welkin::frame::Frame;
@@ -117,7 +119,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(stdout::print(&rendered.text)?)
 }
 
-/// Renders and writes frame after frame; what they took is one list in the JSON file.
+/// Renders frame after frame, and writes each while the next is rendered; what they took is one list in the JSON file.
 fn run_frames(
     arguments: &Arguments,
     scene: &Scene,
@@ -127,17 +129,29 @@ fn run_frames(
 ) -> Result<(), Failure> {
     let json_file = arguments.json.as_deref().map(AtomicFile::create).transpose()?;
     let mut all = Vec::new();
-    gpu::render_frames(arguments, scene, outputs, frames, |number, scene, rendered| {
-        let paths = arguments.output.iter().map(|path| numbered(path, number));
-        let files = paths.map(|path| AtomicFile::create(&path)).collect::<Result<Vec<_>, _>>()?;
-        write_pictures(files, formats, &rendered, scene)?;
-        all.push(rendered.json);
-        Ok(stdout::print(&rendered.text)?)
+    thread::scope(|threads| {
+        let mut writing = None;
+        gpu::render_frames(arguments, scene, outputs, frames, |number, scene, rendered| {
+            written(writing.take())?;
+            let paths = arguments.output.iter().map(|path| numbered(path, number));
+            let files = paths.map(|path| AtomicFile::create(&path)).collect::<Result<Vec<_>, _>>()?;
+            all.push(rendered.json.clone());
+            stdout::print(&rendered.text)?;
+            let scene = scene.clone();
+            writing = Some(threads.spawn(move || write_pictures(files, formats, &rendered, &scene)));
+            Ok(())
+        })?;
+        written(writing)
     })?;
     match json_file {
         Some(file) => Ok(file.write_all(format!("[\n{}\n]\n", all.join(",\n")).as_bytes())?),
         None => Ok(()),
     }
+}
+
+/// Waits until a frame's files are there.
+fn written(writing: Option<ScopedJoinHandle<Result<(), Failure>>>) -> Result<(), Failure> {
+    writing.map_or(Ok(()), |writing| writing.join().unwrap_or_else(|panic| resume_unwind(panic)))
 }
 
 fn write_pictures(
