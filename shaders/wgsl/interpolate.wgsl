@@ -1,18 +1,27 @@
 // Pass: linear radiance of every pixel, interpolated between the corners of its cell of the lattice with the bend that the
 // centres show; and a list of the cells in which that is not enough, whose pixels `compose` evaluates one by one.
 //
+// Towards the horizon light bends far more from row to row than along a row. Where an invocation fills all of a cell, it evaluates
+// both ends of each row there and interpolates between them alone.
+//
 // Definitions: LATTICE_PPM, millionths by which interpolation may err, at most; WHOLE_CELLS (an invocation fills all of a cell and
 // not a column: fewer reads of the lattice, for devices of few invocations); LATTICE_TRANSMITTANCE (transmittance matters).
 
 #import welkin::camera::{view_direction, view_through}
 #import welkin::lattice::{
-    cell_kind, centre_node, corner_node, entry_of_cell, CELL, CELL_TOTAL, LIST_HEADER, MIXED_CELL, MOST_GROUPS
+    cell_kind, centre_node, corner_node, entry_of_cell, CELL, CELL_TOTAL, GROUND_CELL, LIST_HEADER, MIXED_CELL, MOST_GROUPS
 }
+#ifdef WHOLE_CELLS
+#import welkin::loops::counted
+#endif
 #import welkin::pixel::{put, radiance_image, seen_through_clouds, singly_scattered}
 #ifdef SURFACE
 #import welkin::pixel::{surface_image, NO_SURFACE_M}
 #endif
 #import welkin::smooth_sky::{mixed, SmoothSky}
+#ifdef WHOLE_CELLS
+#import welkin::smooth_sky::smooth_sky
+#endif
 
 @group(0) @binding(20) var sky_lattice: texture_2d_array<f32>;
 // For an indirect dispatch: workgroups along three axes. Then the number of cells, and each.
@@ -91,7 +100,17 @@ fn bend_of(view: vec3<f32>, cell: vec2<u32>, corners: Corners) -> Bend {
 // of the height that three centres in a row show, and up to 1.11 of the larger of that and the cell's own.
 const RESIDUE: f32 = 1.26;
 
-// Whether the parabola leaves less than the tolerance.
+// Whether it leaves less than the tolerance along every row, also along those of which least light comes.
+fn is_slight_along_rows(view: vec3<f32>, corners: Corners, bend: Bend) -> bool {
+    let least = min(
+        min(clear_radiance(view, corners.upper_left), clear_radiance(view, corners.lower_left)),
+        min(clear_radiance(view, corners.upper_right), clear_radiance(view, corners.lower_right)),
+    );
+    // Not where rows lead from the air into space.
+    return all(least > vec3<f32>(0.0)) && all(RESIDUE * abs(bend.along_row) <= TOLERANCE * least);
+}
+
+// Whether it does in all of the cell.
 fn is_slight(view: vec3<f32>, cell: vec2<u32>, bend: Bend) -> bool {
     let middle = vec2<u32>(cell.x, with_neighbours(cell).y);
     let above = middle - vec2<u32>(0u, 1u);
@@ -108,24 +127,63 @@ fn is_slight(view: vec3<f32>, cell: vec2<u32>, bend: Bend) -> bool {
     return all(RESIDUE * height <= TOLERANCE * clear_radiance(view, centre));
 }
 
-// The same of transmittance, which has no parabola: a kink leaves up to twice the height that the centre shows.
-fn transmittance_is_straight(cell: vec2<u32>, corners: Corners) -> bool {
-#ifdef LATTICE_TRANSMITTANCE
+// By how much transmittance, which has no parabola, bends along a row.
+fn transmittance_along_row(cell: vec2<u32>) -> vec3<f32> {
     let middle = vec2<u32>(with_neighbours(cell).x, cell.y);
     let left = centre_node(sky_lattice, middle - vec2<u32>(1u, 0u)).transmittance;
     let right = centre_node(sky_lattice, middle + vec2<u32>(1u, 0u)).transmittance;
-    let along_row = 0.125 * (2.0 * centre_node(sky_lattice, middle).transmittance - left - right);
+    return 0.125 * (2.0 * centre_node(sky_lattice, middle).transmittance - left - right);
+}
+
+// A kink leaves up to twice the height that the centre shows.
+fn is_straight(cell: vec2<u32>, height: vec3<f32>) -> bool {
+    return all(2.0 * height <= TOLERANCE * centre_node(sky_lattice, cell).transmittance);
+}
+
+fn transmittance_is_straight_along_rows(cell: vec2<u32>) -> bool {
+#ifdef LATTICE_TRANSMITTANCE
+    return is_straight(cell, abs(transmittance_along_row(cell)));
+#else
+    return true;
+#endif
+}
+
+fn transmittance_is_straight(cell: vec2<u32>, corners: Corners) -> bool {
+#ifdef LATTICE_TRANSMITTANCE
+    let along_row = transmittance_along_row(cell);
     let mean = 0.25 * (
         corners.upper_left.transmittance + corners.lower_left.transmittance + corners.upper_right.transmittance
             + corners.lower_right.transmittance
     );
     let centre = centre_node(sky_lattice, cell).transmittance;
-    let height = abs(along_row) + abs(centre - mean - along_row);
-    return all(2.0 * height <= TOLERANCE * centre);
+    return is_straight(cell, abs(along_row) + abs(centre - mean - along_row));
 #else
     return true;
 #endif
 }
+
+#ifdef WHOLE_CELLS
+// Both ends of a row of a cell's pixels, each evaluated for itself.
+struct Ends {
+    left: SmoothSky,
+    right: SmoothSky,
+}
+
+fn ends_of_row(cell: vec2<u32>, row: u32) -> Ends {
+    let below_horizon = cell_kind(sky_lattice, cell) == GROUND_CELL;
+    var ends: Ends;
+    for (var side = 0u; side < counted(2u); side++) {
+        let view = view_through(vec2<f32>(f32(CELL * (cell.x + side)), f32(row) + 0.5));
+        let sky = smooth_sky(view, atan2(length(view.xy), view.z), below_horizon);
+        if side == 0u {
+            ends.left = sky;
+        } else {
+            ends.right = sky;
+        }
+    }
+    return ends;
+}
+#endif
 
 fn list(cell: vec2<u32>) {
     let entry = atomicAdd(&exact_cells[CELL_TOTAL], 1u);
@@ -160,10 +218,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let corners = corners_of(cell);
     let middle_view = view_through(f32(CELL) * (vec2<f32>(cell) + 0.5));
     let bend = bend_of(middle_view, cell, corners);
+    var row_by_row = false;
     if first.x % CELL == 0u {
         let mixes = cell_kind(sky_lattice, cell) == MIXED_CELL || holds_surface(cell, size);
         let slight = is_slight(middle_view, cell, bend) && transmittance_is_straight(cell, corners);
-        if mixes || !slight {
+#ifdef WHOLE_CELLS
+        row_by_row = !slight && is_slight_along_rows(middle_view, corners, bend) && transmittance_is_straight_along_rows(cell);
+#endif
+        if mixes || !(slight || row_by_row) {
             list(cell);
 #ifdef WHOLE_CELLS
             // `compose` writes all of its pixels.
@@ -175,9 +237,17 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var row = first.y;
     loop {
         let down = (f32(row - first.y) + 0.5) / f32(CELL);
-        let left = mixed(corners.upper_left, corners.lower_left, down);
-        let right = mixed(corners.upper_right, corners.lower_right, down);
-        let bent_down = 4.0 * down * (1.0 - down) * bend.along_column;
+        var left = mixed(corners.upper_left, corners.lower_left, down);
+        var right = mixed(corners.upper_right, corners.lower_right, down);
+        var bent_down = 4.0 * down * (1.0 - down) * bend.along_column;
+#ifdef WHOLE_CELLS
+        for (var i = 0u; i < 1u && row_by_row; i++) {
+            let ends = ends_of_row(cell, row);
+            left = ends.left;
+            right = ends.right;
+            bent_down = vec3<f32>(0.0);
+        }
+#endif
         var column = first.x;
         loop {
             let pixel = vec2<u32>(column, row);

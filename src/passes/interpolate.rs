@@ -12,6 +12,11 @@ pub const PASS: Pass = Pass {
         name: NAME,
         need,
         reads: &[
+            "optical_depth_table",
+            "multiple_scattering_table",
+            "view_optical_depth_table",
+            "sky_view_table",
+            "view_emission_table",
             "sky_lattice",
             "cloud_radiance_image",
             "cloud_air_image",
