@@ -199,7 +199,8 @@ impl Renderer {
     }
 
     /// Renders what the scene's camera sees, and leaves it on the device: as [`Renderer::render`] without its copies. What
-    /// nothing has changed is not computed again, the picture included.
+    /// nothing has changed is not computed again, the picture included. Radiance that nobody asks for is kept in half floats, times
+    /// an exposure, as what the picture is made from.
     ///
     /// # Errors
     /// As [`Renderer::render`].
@@ -207,7 +208,10 @@ impl Renderer {
         if scene.spectrum.group_count() > 1 {
             return self.execute_groups(scene, settings, outputs);
         }
-        let facts = Facts::new(scene, settings, Orders::All, outputs)?.in_picture();
+        let mut facts = Facts::new(scene, settings, Orders::All, outputs)?.in_picture();
+        if self.resources.targets.iter().all(|(target, ..)| *target != "radiance_image") {
+            facts = facts.for_screen();
+        }
         let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
         self.execute("frame", &facts, &passes)
     }

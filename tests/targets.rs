@@ -79,6 +79,36 @@ fn a_frame_in_the_hosts_images_is_the_frame_that_is_read_back() {
     });
 }
 
+/// A picture alone, its radiance kept in half floats; and the same from all digits.
+fn for_screen_and_exact(renderer: &mut Renderer, gpu: &Gpu, scene: &Scene) -> [Vec<[u8; 4]>; 2] {
+    let all = targets(gpu, 96);
+    let picture_alone = Targets { radiance: None, ..all.clone() };
+    [picture_alone, all].map(|targets| {
+        renderer.render_to(scene, settings(), &targets, NextUse::Copy).unwrap();
+        gpu.read_image(targets.picture.as_ref().unwrap()).unwrap()
+    })
+}
+
+#[test]
+fn radiance_that_only_a_screen_is_shown_may_be_half_floats() {
+    common::with_gpu(|gpu| {
+        let mut renderer = Renderer::on(gpu.clone()).unwrap();
+        let night = "[display]\nexposure_ev = 22\n";
+        for (sun_deg, more) in [(20.0, ""), (5.0, "[display]\nexposure_ev = -3\n"), (-12.0, night)] {
+            let scene = scene(sun_deg, more);
+            let [for_screen, exact] = for_screen_and_exact(&mut renderer, gpu, &scene);
+            // Half floats round by 1/2048 of a value, and the curve from it to 255 steps has no slope above 255: less than
+            // a step, and so at most one.
+            let steps = for_screen.iter().flatten().zip(exact.iter().flatten()).map(|(a, b)| a.abs_diff(*b));
+            assert!(steps.max() <= Some(1), "sun at {sun_deg} degrees");
+            assert!(exact.iter().any(|[red, ..]| (32..224).contains(red)), "the control: it shows something");
+        }
+        // The control: without an exposure before them, half floats would have no digits for that night.
+        let radiance = read_back(&mut renderer, &scene(-12.0, night)).1;
+        assert!(radiance.iter().all(|[red, ..]| *red < 6e-5), "the smallest half float with all its digits is 6.1e-5");
+    });
+}
+
 #[test]
 fn a_screen_that_shows_light_above_white_is_sent_what_the_standards_say() {
     common::with_gpu(|gpu| {

@@ -10,7 +10,8 @@ struct Camera {
     // tan of half the vertical field of view.
     half_height: f32,
     up: vec3<f32>,
-    padding: f32,
+    // What radiance is multiplied with where pixels are half floats.
+    pre_exposure: f32,
     // Pixels.
     size: vec2<f32>,
     padding_a: f32,

@@ -3,16 +3,21 @@
 //
 // Definitions: CAPTURE (also write transmittance and distance, for files and engines), CLOUDS,
 // LOCAL_MEDIA (clouds are marched together with fog, volumes and local lights), SURFACE (something stands before the camera),
-// OVERLAY (clouds or local media).
+// OVERLAY (clouds or local media), FOR_SCREEN (radiance is kept in half floats, times `camera.pre_exposure`).
 
 #import welkin::atmosphere::{phase_per_sr, SCATTERER_SLOTS}
-#import welkin::camera::view_direction
+#import welkin::camera::{camera, view_direction}
 #import welkin::march::view_ray
 #import welkin::observer::observer
 #import welkin::sky::{Shares, ALL}
 #import welkin::smooth_sky::{SmoothSky, SINGLE_COUNT}
 
+#ifdef FOR_SCREEN
+@group(0) @binding(8) var radiance_image: texture_storage_2d<rgba16float, write>;
+const LARGEST_HALF: f32 = 65504.0;
+#else
 @group(0) @binding(8) var radiance_image: texture_storage_2d<rgba32float, write>;
+#endif
 #ifdef CAPTURE
 @group(0) @binding(9) var transmittance_image: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(11) var distance_image: texture_storage_2d<r32float, write>;
@@ -124,7 +129,12 @@ fn seen_through_clouds(pixel: vec2<u32>, view: vec3<f32>, sky: SmoothSky) -> See
 }
 
 fn put(pixel: vec2<u32>, view: vec3<f32>, seen: Seen) {
+#ifdef FOR_SCREEN
+    let exposed = min(camera.pre_exposure * seen.radiance, vec3<f32>(LARGEST_HALF));
+    textureStore(radiance_image, pixel, vec4<f32>(exposed, 1.0));
+#else
     textureStore(radiance_image, pixel, vec4<f32>(seen.radiance, 1.0));
+#endif
 #ifdef CAPTURE
     var distance_m = bitcast<f32>(INFINITY_BITS);
     let zenith_rad = atan2(length(view.xy), view.z);

@@ -1,5 +1,6 @@
 //! Linear radiance of every pixel.
 
+use super::display::pre_exposure;
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{GpuImage, ImageFormat, ImageShape, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, Need, Surface, lattice_cell};
@@ -33,7 +34,7 @@ pub const PASS: Pass = Pass {
         bytes: |facts| {
             let pixels = shape(facts).texels();
             let capture = ImageFormat::Rgba32Float.texel_bytes() + ImageFormat::R32Float.texel_bytes();
-            pixels * (ImageFormat::Rgba32Float.texel_bytes() + if facts.outputs.capture { capture } else { 0 })
+            pixels * (radiance_format(facts).texel_bytes() + if facts.outputs.capture { capture } else { 0 })
         },
     },
     record,
@@ -44,7 +45,12 @@ pub(super) fn inputs(facts: &Facts) -> Fingerprint {
     let scene = facts.scene;
     let lights = (&facts.lights, &facts.faint_discs);
     let request = (facts.outputs.capture, facts.surface, facts.settings.lattice_tolerance.to_bits());
-    Fingerprint::of(&(&scene.camera, lights, &scene.planet, request))
+    let kept_as = (facts.for_screen, pre_exposure(facts).to_bits());
+    Fingerprint::of(&(&scene.camera, lights, &scene.planet, request, kept_as))
+}
+
+fn radiance_format(facts: &Facts) -> ImageFormat {
+    if facts.for_screen { ImageFormat::Rgba16Float } else { ImageFormat::Rgba32Float }
 }
 
 fn shape(facts: &Facts) -> ImageShape {
@@ -70,7 +76,7 @@ pub(super) struct Images {
 /// Makes the images that pixels are written to.
 pub(super) fn images(recording: &mut Recording) -> Result<Images, RenderError> {
     let shape = shape(recording.facts);
-    recording.resources.image("radiance_image", shape, ImageFormat::Rgba32Float)?;
+    recording.resources.image("radiance_image", shape, radiance_format(recording.facts))?;
     if recording.facts.outputs.capture {
         recording.resources.image("transmittance_image", shape, ImageFormat::Rgba32Float)?;
         recording.resources.image("distance_image", shape, ImageFormat::R32Float)?;

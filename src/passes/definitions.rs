@@ -111,6 +111,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("VOLUME_ORDERS", facts.cloud_scattering() != CloudScattering::Single),
         ("SOURCE_FUNCTION", facts.treatment == Treatment::SourceFunction),
         ("CAPTURE", facts.outputs.capture),
+        ("FOR_SCREEN", facts.for_screen),
         ("SURFACE", facts.surface.is_some()),
         ("SURFACE_HILLS", facts.surface == Some(Surface::Terrain)),
         ("OVERLAY", has_overlay),

@@ -1,6 +1,7 @@
 //! A picture of the frame for a screen.
 
 use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
 
 use super::colour::padded_columns;
 use super::{Pass, Recording, RenderError};
@@ -31,6 +32,21 @@ pub struct DisplayBlock {
     to_srgb: [[f32; 4]; 3],
 }
 
+/// Exposures of half floats lie this many stops apart, so that a slightly other exposure does not change every pixel.
+const PRE_EXPOSURE_STEP_EV: f64 = 4.0;
+
+/// What radiance is multiplied with before it is kept for a screen alone: white then lies between 1 and 16, 12 to 16 stops
+/// below the largest half float and 14 to 18 above the smallest with all its digits; 1 where all digits are kept (pre-exposure:
+/// Lagarde & de Rousiers 2014, section 5.1).
+pub(super) fn pre_exposure(facts: &Facts) -> f64 {
+    if !facts.for_screen {
+        return 1.0;
+    }
+    let to_srgb = display::exposed_bands(facts.scene);
+    let whitest = (to_srgb * DVec3::ONE).max_element();
+    (PRE_EXPOSURE_STEP_EV * (whitest.log2() / PRE_EXPOSURE_STEP_EV).ceil()).exp2()
+}
+
 fn shape(facts: &Facts) -> ImageShape {
     ImageShape::D2(facts.scene.camera.width, facts.scene.camera.height)
 }
@@ -49,7 +65,7 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
     let scene = recording.facts.scene;
     let (to_srgb, seen) = match recording.facts.part {
-        None => (display::exposed_bands(scene), "radiance_image"),
+        None => (display::exposed_bands(scene) / pre_exposure(recording.facts), "radiance_image"),
         Some(_) => (display::exposed_srgb(scene), "colour_image"),
     };
     let Some(seen) = recording.resources.existing_image(seen).cloned() else { return Ok(()) };

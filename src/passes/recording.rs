@@ -9,6 +9,7 @@ use super::blocks::{
     cosine_nodes, emission_block, gauss_nodes, grid_nodes, height_field_block, lamps, legendre_moments,
     local_light_blocks, observer_block, volume_blocks, volume_samples, volume_terms,
 };
+use super::display::pre_exposure;
 use super::{HostFrame, HostLeft, RenderError, Resources, definitions, ordinates};
 use crate::gpu::{Commands, Completed, GpuBuffer, GpuImage, Resource, Work};
 use crate::plan::Facts;
@@ -28,7 +29,7 @@ impl Parameters {
             ("cosine_nodes", bytes(&cosine_nodes(&facts.settings))),
             ("grid_nodes", bytes(&grid_nodes(facts.source_grid()))),
             ("observer", observer_block(facts)),
-            ("camera", bytemuck::bytes_of(&CameraBlock::new(&facts.scene.camera)).to_vec()),
+            ("camera", bytemuck::bytes_of(&CameraBlock::new(&facts.scene.camera, pre_exposure(facts))).to_vec()),
         ]))
     }
 

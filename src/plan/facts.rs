@@ -3,15 +3,18 @@
 use welkin_lut::cloud::CloudLayer;
 use welkin_lut::mapping::SkyViewMapping;
 use welkin_lut::volume::Volume;
-use welkin_lut::{Constituent, DensityProfile, PhaseFunction, geometry};
+use welkin_lut::{Constituent, PhaseFunction, geometry};
 
+use super::constituent_groups::{
+    ConstituentGroups, check_supported, group_of, profile_groups, profile_rank, weakens_light,
+};
 use super::disc::is_wide;
-use super::faint::{Reach, reach};
+use super::lights::{local_lights, shining_lights, sort_lights};
 use super::seen_volumes::seen_volumes;
 use super::thin;
-use super::{CloudScattering, OutOfView, PlanError, Sequence, Settings, Skipping, SourceGrid, TableFormat, Treatment};
+use super::{CloudScattering, OutOfView, PlanError, Sequence, Settings, SourceGrid, TableFormat, Treatment};
 use crate::probe::Orders;
-use crate::scene::{DirectionalLight, GroupColour, Light, PointLight, Scene, WavelengthGroup};
+use crate::scene::{DirectionalLight, GroupColour, PointLight, Scene, WavelengthGroup};
 
 /// What is to come out of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -62,30 +65,6 @@ impl SpectralPart {
     }
 }
 
-/// Where each group of constituents ends in the sorted list.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct ConstituentGroups {
-    /// Exponential profiles that scatter.
-    pub scattering_exponential_end: u32,
-    /// Then tents that scatter.
-    pub scattering_tent_end: u32,
-    /// Then layers that scatter: all that scatter end here.
-    pub scatterer_count: u32,
-    /// Exponential profiles that only absorb.
-    pub absorbing_exponential_end: u32,
-    /// Then tents that only absorb.
-    pub absorbing_tent_end: u32,
-    /// Then layers that only absorb: all end here.
-    pub count: u32,
-}
-
-impl ConstituentGroups {
-    /// Whether some constituent's density is a layer.
-    pub fn has_layers(&self) -> bool {
-        self.scatterer_count > self.scattering_tent_end || self.count > self.absorbing_tent_end
-    }
-}
-
 /// A scene, a quality and a request, with what follows from them.
 #[derive(Debug, Clone)]
 pub struct Facts<'a> {
@@ -131,6 +110,8 @@ pub struct Facts<'a> {
     pub surface: Option<Surface>,
     /// Where this frame stands among others; none for one that stands alone.
     pub sequence: Option<Sequence>,
+    /// Whether nobody reads the frame's radiance but the picture for a screen, for which half floats will do.
+    pub for_screen: bool,
     /// What is left out because the picture does not show it.
     pub out_of_view: OutOfView,
     /// Why light scattered more than once does not show in air over smooth ground, if it does not.
@@ -167,7 +148,7 @@ impl<'a> Facts<'a> {
         }
         let camera = &scene.camera;
         let sorted = sort_lights(&shining_lights(scene)?, scene, &settings.skipping);
-        let groups = groups(&constituents);
+        let groups = ConstituentGroups::of(&constituents);
         let scatterers = &constituents[..groups.scatterer_count as usize];
         let (treatment, treatment_reason) = Treatment::choose(&settings, scatterers, scene.planet.atmosphere_height_m);
         let facts = Self {
@@ -201,6 +182,7 @@ impl<'a> Facts<'a> {
             },
             surface: None,
             sequence: None,
+            for_screen: false,
             out_of_view: OutOfView::default(),
         };
         Ok(facts.with_surface(scene.terrain.as_ref().map(|_| Surface::Terrain)))
@@ -214,6 +196,12 @@ impl<'a> Facts<'a> {
     /// As one of a sequence of frames.
     pub fn in_sequence(self, sequence: Option<Sequence>) -> Self {
         Self { sequence, ..self }
+    }
+
+    /// As a frame whose radiance stays on the device, where only its picture is looked at. Sums over groups of wavelengths,
+    /// and what goes into files, need all digits.
+    pub fn for_screen(self) -> Self {
+        Self { for_screen: self.part.is_none() && !self.outputs.capture, ..self }
     }
 
     /// Side of the blocks of pixels of which one is marched through the clouds; 1 where all are. What the frame before has
@@ -369,107 +357,4 @@ impl<'a> Facts<'a> {
             _ => altitude_m,
         }
     }
-}
-
-fn weakens_light(constituent: &Constituent) -> bool {
-    constituent.extinction_per_m().iter().any(|&c| c > 0.0)
-}
-
-/// The shaders' order of profiles.
-fn profile_rank(profile: &DensityProfile) -> u8 {
-    match profile {
-        DensityProfile::Exponential { .. } => 0,
-        DensityProfile::Tent { .. } => 1,
-        DensityProfile::Layer { .. } => 2,
-    }
-}
-
-/// Sort key: scattering before absorbing, then by profile.
-fn group_of(constituent: &Constituent) -> (bool, u8) {
-    (!constituent.scatters(), profile_rank(&constituent.profile))
-}
-
-fn groups(sorted: &[&Constituent]) -> ConstituentGroups {
-    let end_of = |group: (bool, u8)| sorted.partition_point(|constituent| group_of(constituent) <= group) as u32;
-    ConstituentGroups {
-        scattering_exponential_end: end_of((false, 0)),
-        scattering_tent_end: end_of((false, 1)),
-        scatterer_count: end_of((false, 2)),
-        absorbing_exponential_end: end_of((true, 0)),
-        absorbing_tent_end: end_of((true, 1)),
-        count: end_of((true, 2)),
-    }
-}
-
-/// The number of each constituent's profile, counted in the order in which new ones appear.
-fn profile_groups(scatterers: &[&Constituent]) -> Vec<u32> {
-    let mut profiles: Vec<DensityProfile> = Vec::new();
-    let mut number_of = |profile: &DensityProfile| {
-        let known = profiles.iter().position(|other| other == profile);
-        known.unwrap_or_else(|| {
-            profiles.push(*profile);
-            profiles.len() - 1
-        }) as u32
-    };
-    scatterers.iter().map(|constituent| number_of(&constituent.profile)).collect()
-}
-
-fn check_supported(constituent: &Constituent) -> Result<(), PlanError> {
-    let unsupported =
-        |what: &str| Err(PlanError::Unsupported { what: format!("constituent '{}' {what}", constituent.name) });
-    if constituent.scatters() && matches!(constituent.phase, PhaseFunction::Tabulated(_)) {
-        return unsupported("has a tabulated phase function");
-    }
-    Ok(())
-}
-
-/// Lights by what they reach.
-#[derive(Default)]
-struct SortedLights<'a> {
-    lit: Vec<&'a DirectionalLight>,
-    faint_discs: Vec<&'a DirectionalLight>,
-    left_out: Vec<String>,
-}
-
-fn sort_lights<'a>(shining: &[&'a DirectionalLight], scene: &Scene, skipping: &Skipping) -> SortedLights<'a> {
-    let mut sorted = SortedLights::default();
-    for light in shining {
-        match reach(light, shining, &scene.planet, scene.camera.altitude_m.max(0.0), skipping) {
-            Reach::Lit => sorted.lit.push(light),
-            Reach::DiscOnly(reason) => {
-                sorted.faint_discs.push(light);
-                sorted.left_out.push(reason);
-            }
-            Reach::Unseen(reason) => sorted.left_out.push(reason),
-        }
-    }
-    sorted
-}
-
-fn local_lights(scene: &Scene) -> Vec<PointLight> {
-    let lights = scene.lights.iter().filter_map(|light| match light {
-        Light::Point(light) => {
-            Some(PointLight { intensity: light.intensity_at(scene.time_s), flash: None, ..light.clone() })
-        }
-        _ => None,
-    });
-    let lights = lights.filter(|light| light.intensity.iter().any(|&i| i > 0.0));
-    let mut lights: Vec<_> = lights.collect();
-    lights.sort_by(|a, b| a.name.cmp(&b.name));
-    lights
-}
-
-fn shining_lights(scene: &Scene) -> Result<Vec<&DirectionalLight>, PlanError> {
-    let mut lights = Vec::new();
-    for light in &scene.lights {
-        match light {
-            Light::Directional(light) if light.irradiance.iter().any(|&e| e > 0.0) => lights.push(light),
-            Light::Directional(_) => {}
-            Light::Point(_) => {}
-            Light::Environment(_) => {
-                return Err(PlanError::Unsupported { what: "the scene has an environment light".to_owned() });
-            }
-        }
-    }
-    Ok(lights)
 }

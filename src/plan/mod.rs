@@ -2,6 +2,7 @@
 
 mod bake;
 mod cloud_settings;
+mod constituent_groups;
 mod declaration;
 mod disc;
 mod facts;
@@ -9,6 +10,7 @@ mod faint;
 mod ladder;
 mod lag;
 mod lattice;
+mod lights;
 mod multiple_scattering;
 mod named_settings;
 mod scene_traits;
@@ -24,8 +26,9 @@ use std::collections::BTreeMap;
 
 pub use bake::bake_settings;
 pub use cloud_settings::{CloudScattering, CloudSettings};
+pub use constituent_groups::ConstituentGroups;
 pub use declaration::{Declaration, Fingerprint, Need};
-pub use facts::{ConstituentGroups, Facts, Outputs, SpectralPart, Surface, Viewpoint};
+pub use facts::{Facts, Outputs, SpectralPart, Surface, Viewpoint};
 pub use ladder::{LadderStep, Rung};
 pub use lag::elevation_slack_rad;
 pub use lattice::lattice_cell;

@@ -29,7 +29,7 @@ pub fn cloud_frame_block(facts: &Facts) -> Vec<u8> {
     let index = facts.sequence.filter(|_| block > 1).map_or(0, |sequence| sequence.index);
     let now = Moment { camera: facts.scene.camera, time_s: facts.scene.time_s };
     let before = facts.sequence.and_then(|sequence| sequence.before).unwrap_or(now);
-    let camera = CameraBlock::new(&before.camera);
+    let camera = CameraBlock::new(&before.camera, 1.0);
     let header = CloudFrameHeader {
         first_pixel: pixel_of_block(block, index % (block * block)),
         jitter: (f64::from(index / (block * block)) * GOLDEN_RATIO).fract() as f32,

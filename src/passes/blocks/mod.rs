@@ -90,7 +90,12 @@ mod tests {
     #[test]
     fn blocks_lie_in_memory_as_the_shaders_declare_them() {
         let compose = shader("compose");
-        assert_layout!(compose, "Camera", CameraBlock, [forward, half_width, right, half_height, up, size]);
+        assert_layout!(
+            compose,
+            "Camera",
+            CameraBlock,
+            [forward, half_width, right, half_height, up, pre_exposure, size]
+        );
         assert_eq!(size(&compose, "Camera"), size_of::<CameraBlock>());
         assert_layout!(
             compose,
