@@ -1,6 +1,7 @@
 //! Whether anything pops on a camera path from -10 m to 1000 km and on sun paths from 90 to -18 degrees. Prints Markdown.
 //!
-//! `cargo run --release --example continuity [-- [--worst] [--steps N] [--path N] [QUALITY...]]`; paths are counted from 1.
+//! `cargo run --release --example continuity [-- [--worst] [--steps N] [--path N] [--shaders FOLDER] [QUALITY...]]`; paths are
+//! counted from 1.
 
 #[path = "../tests/continuity/mod.rs"]
 mod continuity;
@@ -51,6 +52,9 @@ fn main() {
     let qualities: Vec<Quality> = words.iter().filter_map(|word| word.parse().ok()).collect();
     let qualities = if qualities.is_empty() { Quality::ALL.to_vec() } else { qualities };
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
+    if let Some(folder) = after("--shaders") {
+        renderer.take_shaders_from(folder.as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    }
     let info = renderer.gpu().info();
     println!("Device: {} ({} {}); {steps} steps a path.\n", info.name, info.driver, info.driver_version);
     println!(

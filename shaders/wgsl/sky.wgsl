@@ -97,6 +97,28 @@ fn ln_mean_transmittance(light: u32, direction: SkyDirection) -> vec3<f32> {
     return edge_strength(light) * select(log((1.0 - exp(-tau)) / tau), -0.5 * tau, tau < vec3<f32>(1e-3));
 }
 
+#ifdef EDGE_OF_SHADOW
+// What a cubic through four rows adds to what is linear between two, at a place between rows: as rows pass a limb that light falls
+// steeply on, a straight line would bend there. Rows go on evenly beyond the first and the last.
+fn bend_between_rows(uv: vec2<f32>, layer: u32) -> vec3<f32> {
+    let rows = f32(textureDimensions(sky_view_table).y);
+    let place = clamp(uv.y * rows - 0.5, 0.0, rows - 1.0);
+    let low = min(floor(place), rows - 2.0);
+    let t = place - low;
+    var row: array<vec3<f32>, 4>;
+    for (var k = 0u; k < 4u; k++) {
+        let v = (low + f32(k) - 0.5) / rows;
+        row[k] = textureSampleLevel(sky_view_table, table_sampler, vec2<f32>(uv.x, v), layer, 0.0).rgb;
+    }
+    let before = select(row[0], 2.0 * row[1] - row[2], low == 0.0);
+    let after = select(row[3], 2.0 * row[2] - row[1], low == rows - 2.0);
+    // Catmull-Rom: second differences on both sides.
+    let bend_low = before - 2.0 * row[1] + row[2];
+    let bend_high = row[1] - 2.0 * row[2] + after;
+    return -0.5 * t * (1.0 - t) * ((1.0 - t) * bend_low + t * bend_high);
+}
+#endif
+
 // One layer of the sky view, over the length of air, 1/m: multiply scattered radiance, or a scatterer's light without
 // its phase function.
 fn sky_view(light: u32, layer: u32, direction: SkyDirection) -> vec3<f32> {
@@ -115,7 +137,11 @@ fn sky_view(light: u32, layer: u32, direction: SkyDirection) -> vec3<f32> {
         ln_scale += ln_lit_share(light, view, layer - SINGLE_LAYER);
     }
 #endif
-    return exp(textureSampleLevel(sky_view_table, table_sampler, uv, first + layer, 0.0).rgb + ln_scale);
+    var logarithm = textureSampleLevel(sky_view_table, table_sampler, uv, first + layer, 0.0).rgb;
+#ifdef EDGE_OF_SHADOW
+    logarithm += edge_strength(light) * bend_between_rows(uv, first + layer);
+#endif
+    return exp(logarithm + ln_scale);
 }
 
 // What clouds leave of light that comes straight from a light, and of light that air or clouds have scattered before.
