@@ -84,8 +84,9 @@ fn nearly_straight(sample: Sample, matter: CloudMatter) -> f32 {
 }
 
 const NEAR_SAMPLES: u32 = #{CLOUD_NEAR_SAMPLES}u;
-// Where the grid takes over, in its cells: closer, it cannot tell a cloud's edge from its core.
-const NEAR_CELLS: f32 = 1.25;
+// Where the grid takes over, in its cells: closer, it cannot tell a cloud's edge from its core. The stretches of the samples
+// grow with the distance: what dims most lies close, and in wide cells equal stretches would step over it.
+const NEAR_CELLS: f32 = 2.5;
 
 // Optical depth of clouds from a sample to a light.
 fn depth_to_light(sample: Sample, light: u32) -> f32 {
@@ -94,10 +95,13 @@ fn depth_to_light(sample: Sample, light: u32) -> f32 {
     let near_m = select(0.0, NEAR_CELLS * cell_m(level_of(sample.map)), NEAR_SAMPLES > 0u);
     var near = 0.0;
     for (var i = 0u; i < NEAR_SAMPLES; i++) {
-        let t_m = near_m * (f32(i) + 0.5) / f32(NEAR_SAMPLES);
-        near += layer_density(layer, sample.map + toward.xy * t_m, sample.altitude_m + toward.z * t_m);
+        let edges = vec2<f32>(f32(i), f32(i + 1u)) / f32(NEAR_SAMPLES);
+        let from_to_m = near_m * edges * edges;
+        let t_m = 0.5 * (from_to_m.x + from_to_m.y);
+        let density = layer_density(layer, sample.map + toward.xy * t_m, sample.altitude_m + toward.z * t_m);
+        near += density * (from_to_m.y - from_to_m.x);
     }
-    near *= cloud_layers[layer].extinction_per_m * near_m / max(f32(NEAR_SAMPLES), 1.0);
+    near *= cloud_layers[layer].extinction_per_m;
     let height = sample.height + toward.z * near_m / cloud_layers[layer].thickness_m;
     let map = sample.map + toward.xy * near_m;
     let far = grid_sample(cloud_light_image, table_sampler, Part(light, LIGHT_COUNT), layer, map, height).x;

@@ -76,7 +76,7 @@ impl CloudSettings {
             warm_sweeps: 2,
             ordinate_cell_m: 120,
             ordinate_cells: 64,
-            near_samples: 4,
+            near_samples: 6,
             step_m: 15,
             step_permille: 5,
             max_steps: 384,
