@@ -17,6 +17,9 @@ use super::fields::extent_m;
 /// Iterations from darkness; twice as many change no field here by a per cent.
 const SWEEPS: u32 = 120;
 
+/// The same for slabs: some rows times as many.
+const SWEEPS_PER_ROW: u32 = 40;
+
 /// Fine texels along a cell's edge, as for scenes.
 const REFINEMENT: u32 = 2;
 
@@ -80,7 +83,9 @@ impl Solver {
         self.relax(&problem, &extinction, phase, SWEEPS)
     }
 
-    /// A homogeneous slab of thickness 1 m and an optical depth that goes on to all sides, in rows of cells 1 m wide.
+    /// A homogeneous slab of thickness 1 m and an optical depth that goes on to all sides, in rows of cells
+    /// four times as wide as high: much wider ones would have slopes across that no slab has, and narrower ones, whose
+    /// light comes back to them from the sides, would need more sweeps.
     pub fn slab(
         &mut self,
         depth: f64,
@@ -88,7 +93,7 @@ impl Solver {
         phase: &PhaseFunction,
         rows: u32,
     ) -> Result<LightField, Box<dyn Error>> {
-        let (size, cell_m) = (UVec3::new(1, 1, rows), DVec3::new(1.0, 1.0, 1.0 / f64::from(rows)));
+        let (size, cell_m) = (UVec3::new(1, 1, rows), DVec3::new(4.0, 4.0, 1.0) / f64::from(rows));
         let levels = vec![Level { lowest_m: DVec3::ZERO, cell_m, size }];
         let problem = Problem {
             grid: Grid { levels, sides: Sides::Periodic, refinement: REFINEMENT },
@@ -99,7 +104,7 @@ impl Solver {
             ground_albedo: 0.0,
         };
         let extinction = vec![(depth * (1.0 - forward_share(phase))) as f32; 8 * rows as usize];
-        self.relax(&problem, &extinction, phase, 40 * rows)
+        self.relax(&problem, &extinction, phase, SWEEPS_PER_ROW * rows)
     }
 
     fn relax(
@@ -153,6 +158,11 @@ fn means(cloud: &GridField, size: UVec3, texel_m: DVec3, share: f64) -> Vec<f32>
 }
 
 impl LightField {
+    /// The place at a height in the middle of the first column.
+    pub fn column_m(&self, height_m: f64) -> DVec3 {
+        DVec3::new(0.5 * self.cell_m.x, 0.5 * self.cell_m.y, height_m)
+    }
+
     /// Light scattered towards a view ray's observer by the similar medium, per unit of its scattering: sun and sky; the
     /// sun's beam is dimmed to a share. As `ordinates_light.wgsl` has it.
     pub fn scattered(&self, place_m: DVec3, direction: DVec3, beam: f64) -> [f64; 2] {

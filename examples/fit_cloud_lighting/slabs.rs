@@ -130,7 +130,7 @@ impl Slab<'_> {
             let step = self.depth / STEPS as f64;
             for i in 0..STEPS {
                 let below = (i as f64 + 0.5) * step;
-                let place_m = DVec3::new(0.5, 0.5, 1.0 - below / self.depth);
+                let place_m = field.column_m(1.0 - below / self.depth);
                 let seen = (-q * below / mu).exp() * q * step / mu;
                 sum += seen * field.scattered(place_m, view, (-q * below / self.mu0).exp())[0];
             }
