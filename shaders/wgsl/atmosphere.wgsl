@@ -170,3 +170,8 @@ fn phase_per_sr(constituent: u32, nu: f32) -> f32 {
     }
     return phase;
 }
+
+// 1 where a constituent throws most light forwards, -1 where backwards.
+fn peak_side(constituent: u32) -> f32 {
+    return select(1.0, -1.0, phase_per_sr(constituent, -1.0) > phase_per_sr(constituent, 1.0));
+}

@@ -6,10 +6,11 @@
 // have no more than a square of nu, as that of molecules, need no such sum for each direction: five moments of the field
 // do for all.
 //
-// A peak elsewhere, as of light that is thrown back, is not subtracted, and a direction in it may count for more than
-// the whole of p. The sum is then divided by what it counts: a mean over directions is never larger than all of them.
+// Of matter that throws light back the peak lies in the opposite direction: there it is the field around that direction that
+// is subtracted. A peak elsewhere is not, and a direction in it may count for more than the whole of p. The sum is then divided
+// by what it counts: a mean over directions is never larger than all of them.
 
-#import welkin::atmosphere::{atmosphere, phase_per_sr, LOBE_COUNT, PI, PROFILE_GROUP_COUNT, SCATTERER_COUNT}
+#import welkin::atmosphere::{atmosphere, peak_side, phase_per_sr, LOBE_COUNT, PI, PROFILE_GROUP_COUNT, SCATTERER_COUNT}
 #import welkin::loops::counted
 #import welkin::source_grid::{
     direction_of, moment_texel, texel_of, DIRECTION_COUNT, IRRADIANCE_TILE, MEAN_TILE
@@ -77,6 +78,26 @@ fn quadratic_convolution(constituent: u32, here: vec3<f32>, radiance: vec3<f32>)
     return sum;
 }
 
+// Cosines of the angles between two directions, to both mirror images of the second.
+fn cosines_between(here: vec3<f32>, there: vec3<f32>) -> vec2<f32> {
+    let level = here.x * there.x + here.z * there.z;
+    let across = here.y * there.y;
+    return clamp(vec2<f32>(level + across, level - across), vec2<f32>(-1.0), vec2<f32>(1.0));
+}
+
+// The field opposite to a direction: a mean over all, by the inverse fourth power of the distance (Shepard's).
+fn radiance_opposite(here: vec3<f32>) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    var weights = 0.0;
+    for (var j = 0u; j < counted(DIRECTION_COUNT); j++) {
+        let distance2 = 1.0 + cosines_between(here, directions[j].xyz) + 1e-6;
+        let weight = directions[j].w * (1.0 / (distance2.x * distance2.x) + 1.0 / (distance2.y * distance2.y));
+        sum += weight * field[j];
+        weights += weight;
+    }
+    return sum / weights;
+}
+
 // For each group of scatterers with one density profile: sum_c b_c int p_c I dw' / sum_c b_c.
 fn source_function(index: u32) -> array<vec3<f32>, PROFILE_GROUP_COUNT> {
     let here = directions[index].xyz;
@@ -91,21 +112,25 @@ fn source_function(index: u32) -> array<vec3<f32>, PROFILE_GROUP_COUNT> {
         }
         // A bound of zero leaves the loop out also where devices run both sides of a branch.
         let count = select(DIRECTION_COUNT, 0u, quadratic);
+        let is_thrown_back = !quadratic && peak_side(c) < 0.0;
+        var at_peak = radiance;
+        if is_thrown_back {
+            at_peak = radiance_opposite(here);
+        }
         // How much of p, of 1, the sum counts.
-        var counted = 0.0;
+        var share = 0.0;
         for (var j = 0u; j < count; j++) {
             let there = directions[j];
-            let half_sr = select(0.5 * there.w, 0.0, j == index);
-            // Both mirror images of the other direction.
-            let level = here.x * there.x + here.z * there.z;
-            let across = here.y * there.y;
-            let nu = min(vec2<f32>(level + across, level - across), vec2<f32>(1.0));
+            // In the peak itself nothing is left to count.
+            let half_sr = select(0.5 * there.w, 0.0, j == index && !is_thrown_back);
+            let nu = cosines_between(here, there.xyz);
             let phase = phase_per_sr(c, nu.x) + phase_per_sr(c, nu.y);
-            sum += phase * half_sr * (field[j] - radiance);
-            counted += phase * half_sr;
+            sum += phase * half_sr * (field[j] - at_peak);
+            share += phase * half_sr;
         }
         let group = atmosphere.constituents[c].profile_group;
-        convolved[group] += sum / max(counted, 1.0) * atmosphere.constituents[c].scattering_per_m;
+        let change = at_peak - radiance + sum / max(share, 1.0);
+        convolved[group] += change * atmosphere.constituents[c].scattering_per_m;
         scattering[group] += atmosphere.constituents[c].scattering_per_m;
     }
     for (var g = 0u; g < PROFILE_GROUP_COUNT; g++) {

@@ -3,9 +3,10 @@
 //
 // Haze and dust scatter most light into a narrow cone around the light, which falls between the grid's directions or
 // counts too much in one of them. So a direction takes the part of the phase function inside the cone as its mean over
-// the cell around it: the cells' sum is all of the glow, also where the horizon cuts it.
+// the cell around it: the cells' sum is all of the glow, also where the horizon cuts it. Matter that throws light back has
+// its glow around the point opposite the light.
 
-#import welkin::atmosphere::{phase_per_sr, SCATTERER_COUNT, SCATTERER_SLOTS}
+#import welkin::atmosphere::{peak_side, phase_per_sr, SCATTERER_COUNT, SCATTERER_SLOTS}
 #import welkin::source_grid::{direction_in_cell, direction_of, GridDirection}
 
 // Cosine of the cone's half width: the spacing of directions in the coarsest grid, 37 degrees.
@@ -21,20 +22,23 @@ fn cosine_to_light(direction: GridDirection, mu_s: f32) -> f32 {
 // Phase functions of the scatterers towards a direction of the grid, 1/sr.
 fn phases_towards(index: u32, horizon_mu: f32, mu_s: f32) -> array<f32, SCATTERER_SLOTS> {
     let direction = direction_of(index, horizon_mu, mu_s);
-    let nu = min(cosine_to_light(direction, mu_s), CONE_NU);
+    let nu = cosine_to_light(direction, mu_s);
     var inside: array<f32, SCATTERER_SLOTS>;
     for (var i = 0u; i < CELL_POINTS * CELL_POINTS; i++) {
         let shares = (vec2<f32>(f32(i / CELL_POINTS), f32(i % CELL_POINTS)) + 0.5) / f32(CELL_POINTS);
         let point = direction_in_cell(index, shares, horizon_mu, mu_s);
-        let point_nu = max(cosine_to_light(point, mu_s), CONE_NU);
+        let point_nu = cosine_to_light(point, mu_s);
         for (var c = 0u; c < SCATTERER_COUNT; c++) {
-            inside[c] += point.solid_angle_sr * (phase_per_sr(c, point_nu) - phase_per_sr(c, CONE_NU));
+            let side = peak_side(c);
+            let edge = phase_per_sr(c, side * CONE_NU);
+            inside[c] += point.solid_angle_sr * (phase_per_sr(c, side * max(side * point_nu, CONE_NU)) - edge);
         }
     }
     let points_sr = f32(CELL_POINTS * CELL_POINTS) * max(direction.solid_angle_sr, 1e-9);
     var phases_per_sr: array<f32, SCATTERER_SLOTS>;
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
-        phases_per_sr[c] = phase_per_sr(c, nu) + inside[c] / points_sr;
+        let side = peak_side(c);
+        phases_per_sr[c] = phase_per_sr(c, side * min(side * nu, CONE_NU)) + inside[c] / points_sr;
     }
     return phases_per_sr;
 }

@@ -1,8 +1,9 @@
 //! The source function of a place from the radiance field there: the shaders' `convolution.wgsl`, in f64.
 //!
 //! The sum over directions cannot resolve a peak narrower than their spacing, so the peak is subtracted: with p of
-//! integral 1, ∫p I dω' = I + ∫p (I(ω') - I) dω', whose integrand vanishes where p is largest. A peak elsewhere is not
-//! subtracted, and a direction in it may count for more than the whole of p: the sum is then divided by what it counts.
+//! integral 1, ∫p I dω' = I + ∫p (I(ω') - I) dω', whose integrand vanishes where p is largest. Of matter that throws light
+//! back the peak lies in the opposite direction: there it is the field around that direction that is subtracted. A peak
+//! elsewhere is not, and a direction in it may count for more than the whole of p: the sum is then divided by what it counts.
 //! Phase functions that have no more than a square of ν need no sum for each direction: five products do for all.
 
 use std::f64::consts::PI;
@@ -11,7 +12,7 @@ use crate::phase::PhaseLobe;
 use crate::{BAND_COUNT, Bands};
 
 use super::Air;
-use super::glow::phase_per_sr;
+use super::glow::{peak_side, phase_per_sr};
 use super::harmonics::{HARMONIC_COUNT, harmonics};
 use super::light::DARK;
 use super::source_grid::GridAt;
@@ -36,6 +37,12 @@ struct UnitDirection {
 const PRODUCT_COUNT: usize = 5;
 
 impl UnitDirection {
+    /// Cosines of the angles to another direction, and to its mirror image.
+    fn cosines_to(&self, there: &Self) -> [f64; 2] {
+        let (level, across) = (self.x * there.x + self.z * there.z, self.y * there.y);
+        [level + across, level - across].map(|nu| nu.clamp(-1.0, 1.0))
+    }
+
     fn products(&self) -> [f64; PRODUCT_COUNT] {
         [self.x * self.x, self.y * self.y, self.z * self.z, self.x * self.z, 1.0]
     }
@@ -142,23 +149,36 @@ impl Field {
         })
     }
 
+    /// The field opposite to a direction: a mean over all, by the inverse fourth power of the distance (Shepard's).
+    fn radiance_opposite(&self, here: &UnitDirection) -> Bands {
+        let (mut sum, mut weights) = ([0.0; BAND_COUNT], 0.0);
+        for (there, seen) in self.directions.iter().zip(&self.radiance) {
+            let per_distance4 = here.cosines_to(there).map(|nu| (1.0 + nu + 1e-6).powi(-2));
+            let weight = there.solid_angle_sr * (per_distance4[0] + per_distance4[1]);
+            weights += weight;
+            (0..BAND_COUNT).for_each(|band| sum[band] += weight * seen[band]);
+        }
+        sum.map(|value| value / weights)
+    }
+
     /// ∫p (I(ω') - I) dω' for the direction of a number.
     fn convolution(&self, lobes: &[PhaseLobe], index: usize) -> Bands {
         let (here, radiance) = (&self.directions[index], self.radiance[index]);
+        let is_thrown_back = peak_side(lobes) < 0.0;
+        let at_peak = if is_thrown_back { self.radiance_opposite(here) } else { radiance };
         let mut sum = [0.0; BAND_COUNT];
         // How much of p, of 1, the sum counts.
         let mut counted = 0.0;
         for (other, (there, seen)) in self.directions.iter().zip(&self.radiance).enumerate() {
-            if other == index {
+            // In the peak itself nothing is left to count.
+            if other == index && !is_thrown_back {
                 continue;
             }
-            // Both mirror images of the other direction.
-            let (level, across) = (here.x * there.x + here.z * there.z, here.y * there.y);
-            let phase = phase_per_sr(lobes, (level + across).min(1.0)) + phase_per_sr(lobes, (level - across).min(1.0));
+            let phase: f64 = here.cosines_to(there).map(|nu| phase_per_sr(lobes, nu)).iter().sum();
             let weight = 0.5 * there.solid_angle_sr * phase;
             counted += weight;
-            (0..BAND_COUNT).for_each(|band| sum[band] += weight * (seen[band] - radiance[band]));
+            (0..BAND_COUNT).for_each(|band| sum[band] += weight * (seen[band] - at_peak[band]));
         }
-        sum.map(|value| value / counted.max(1.0))
+        std::array::from_fn(|band| at_peak[band] - radiance[band] + sum[band] / counted.max(1.0))
     }
 }
