@@ -11,6 +11,7 @@ use super::constituent_groups::{
 use super::disc::is_wide;
 use super::lights::{local_lights, shining_lights, sort_lights};
 use super::seen_volumes::seen_volumes;
+use super::thick;
 use super::thin;
 use super::{CloudScattering, OutOfView, PlanError, Sequence, Settings, SourceGrid, TableFormat, Treatment};
 use crate::probe::Orders;
@@ -150,6 +151,7 @@ impl<'a> Facts<'a> {
         let sorted = sort_lights(&shining_lights(scene)?, scene, &settings.skipping);
         let groups = ConstituentGroups::of(&constituents);
         let scatterers = &constituents[..groups.scatterer_count as usize];
+        let settings = thick::settings(settings, &constituents, scene.planet.atmosphere_height_m);
         let (treatment, treatment_reason) = Treatment::choose(&settings, scatterers, scene.planet.atmosphere_height_m);
         let facts = Self {
             scene,

@@ -18,6 +18,7 @@ mod seen_volumes;
 mod sequence;
 mod settings;
 mod skipping;
+mod thick;
 mod thin;
 mod view;
 mod volume_settings;

@@ -24,7 +24,9 @@ impl Renderer {
     /// As [`Renderer::render`]; a table that is beyond the device.
     pub fn bake(&mut self, scene: &Scene, settings: &BakeSettings) -> Result<(SourceTable, TableSet), RenderError> {
         let scene = air_alone(scene);
-        let facts = Facts::new(&scene, Settings::for_bake(settings), Orders::All, Outputs::default())?;
+        let asked = Settings::for_bake(settings);
+        // Thick air as well has the sizes that its pack was asked for.
+        let facts = Facts { settings: asked, ..Facts::new(&scene, asked, Orders::All, Outputs::default())? };
         let passes: Vec<&Pass> = TABLES.iter().filter(|pass| BAKED.contains(&pass.declaration.name)).collect();
         self.execute_and("bake", &facts, &passes, |recording| {
             record_scattering_table(recording, &settings.scattering)
