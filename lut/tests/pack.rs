@@ -5,6 +5,7 @@ mod small_air;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use sha2::{Digest, Sha256};
 use small_air::{SMALL, description, earth};
 use welkin_lut::bake::{Air, Baked};
 use welkin_lut::pack::{
@@ -110,6 +111,38 @@ fn what_is_missing_cut_short_of_another_version_or_a_stranger_is_said() {
     assert!(matches!(&refused, PackError::Missing { path } if *path == table), "{refused}");
     fs::remove_file(place.join("manifest.json")).unwrap();
     assert!(matches!(verify(&place), Err(PackError::NoPack { .. })));
+}
+
+/// Signs a manifest anew, as who changes it on purpose can.
+fn sign(manifest: &Manifest, place: &Path) {
+    let unsigned = "0".repeat(64);
+    let text = serde_json::to_string(&Manifest { content_sha256: unsigned.clone(), ..manifest.clone() }).unwrap();
+    let hash: String = Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
+    fs::write(place.join("manifest.json"), text.replacen(&unsigned, &hash, 1)).unwrap();
+}
+
+#[test]
+fn sizes_that_no_file_can_have_are_refused_before_there_is_memory_for_them() {
+    let (_folder, place, manifest) = pack();
+    for size in [[0, 4, 1], [4, 1, 0], [65536, 65536, 1], [16384, 16384, 16384], [u32::MAX; 3]] {
+        let mut lying = manifest.clone();
+        lying.tables[0].size = size;
+        sign(&lying, &place);
+        let pack = Pack::read(&place).unwrap();
+        for format in FileFormat::ALL {
+            let refused = pack.tables(Precision::F16, Some(format)).unwrap_err();
+            assert!(matches!(refused, PackError::Manifest { .. } | PackError::Decode { .. }), "{size:?}: {refused}");
+        }
+    }
+    let mut lying = manifest.clone();
+    lying.sky_parameters.azimuth_count = 1 << 16;
+    lying.sky_parameters.sun_count = 1 << 16;
+    sign(&lying, &place);
+    let refused = Pack::read(&place).unwrap().tables(Precision::F16, None).unwrap_err();
+    assert!(matches!(refused, PackError::Manifest { .. }), "{refused}");
+    // Control: signed again without a lie it is read.
+    sign(&manifest, &place);
+    Pack::read(&place).unwrap().tables(Precision::F16, None).unwrap();
 }
 
 #[test]

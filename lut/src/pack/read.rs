@@ -13,6 +13,9 @@ use crate::table::Table;
 /// How far answers may be from the probes, relative: the same numbers in the same order, so only what JSON rounds.
 const VERIFY_TOLERANCE: f64 = 1e-9;
 
+/// Longest side of a table that is read, texels: wider pictures are no textures on any device.
+const MOST_TEXELS: u32 = 16384;
+
 /// A pack on disk whose manifest and files are as they were written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pack {
@@ -91,9 +94,10 @@ impl Pack {
     fn check_layout(&self, set: &TableSet) -> Result<(), PackError> {
         let (layout, layers) =
             (self.manifest.sky_parameters.layout(), 1 + self.manifest.sky_parameters.scatterers.len());
-        let sides = [layout.azimuths * layout.suns, layout.elevations, 2 * layers as u32 * layout.altitudes];
+        let columns = u64::from(layout.azimuths) * u64::from(layout.suns);
+        let sides = [columns, u64::from(layout.elevations), 2 * layers as u64 * u64::from(layout.altitudes)];
         let least = [layout.azimuths, layout.suns, layout.elevations, layout.altitudes].into_iter().min();
-        if set.scattering.size() == sides && least >= Some(2) {
+        if set.scattering.size().map(u64::from) == sides && least >= Some(2) {
             return Ok(());
         }
         let reason = format!("its parameters ask for {sides:?} texels of scattering, not {:?}", set.scattering.size());
@@ -101,6 +105,10 @@ impl Pack {
     }
 
     fn decode(&self, file: &TableFile, size: [u32; 3]) -> Result<Table, PackError> {
+        if !size.iter().all(|side| (1..=MOST_TEXELS).contains(side)) {
+            let reason = format!("a table of {size:?} texels, expected sides of 1 to {MOST_TEXELS}");
+            return Err(PackError::Manifest { path: self.folder.join("manifest.json"), reason });
+        }
         let decoded = file.container.decode(&self.content(&file.file)?, size, file.precision);
         decoded.map_err(|reason| PackError::Decode { path: self.folder.join(&file.file.path), reason })
     }

@@ -93,9 +93,9 @@ pub(super) fn to_rgba(table: &Table, precision: Precision) -> Vec<u8> {
 
 /// The table of such bytes.
 pub(super) fn from_rgba(bytes: &[u8], size: [u32; 3], precision: Precision) -> Result<Table, String> {
-    let texels: usize = size.iter().map(|&side| side as usize).product();
-    let expected = texels * 4 * precision.bytes();
-    if bytes.len() != expected || texels == 0 {
+    let texels: u64 = size.iter().map(|&side| u64::from(side)).product();
+    let expected = texels * 4 * precision.bytes() as u64;
+    if bytes.len() as u64 != expected || texels == 0 {
         return Err(format!(
             "it holds {} bytes of texels; {size:?} texels in {precision} have {expected}",
             bytes.len()

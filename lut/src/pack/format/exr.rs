@@ -2,6 +2,7 @@
 
 use std::io::Cursor;
 
+use ::exr::meta::MetaData;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels, ReadLayers,
     WritableImage, read,
@@ -41,15 +42,29 @@ pub(super) fn encode(table: &Table, precision: Precision) -> Result<Vec<u8>, Str
     Ok(bytes.into_inner())
 }
 
+/// The most that deflate makes of a byte.
+const MOST_INFLATED: u64 = 1032;
+
+/// Refuses a picture of another size before there is memory for it.
+fn check_size(bytes: &[u8], expected: (usize, usize)) -> Result<(), String> {
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| error.to_string())?;
+    let other = meta.headers.iter().map(|header| header.layer_size).find(|size| (size.x(), size.y()) != expected);
+    if let Some(size) = other {
+        return Err(format!("it is of {size:?} pixels; the atlas of the table has {expected:?}"));
+    }
+    match (expected.0 as u64).checked_mul(expected.1 as u64) {
+        Some(pixels) if pixels / MOST_INFLATED <= bytes.len() as u64 => Ok(()),
+        _ => Err(format!("its {} bytes cannot hold {expected:?} pixels", bytes.len())),
+    }
+}
+
 pub(super) fn decode(bytes: &[u8], size: [u32; 3], precision: Precision) -> Result<Table, String> {
+    let [columns, rows] = atlas(size);
+    let expected = (size[0] as usize * columns as usize, size[1] as usize * rows as usize);
+    check_size(bytes, expected)?;
     let reader = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes();
     let image = reader.from_buffered(Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let layer = image.layer_data;
-    let [columns, rows] = atlas(size);
-    let expected = ((size[0] * columns) as usize, (size[1] * rows) as usize);
-    if (layer.size.x(), layer.size.y()) != expected {
-        return Err(format!("it is of {:?} pixels; the atlas of {size:?} texels has {expected:?}", layer.size));
-    }
     let channel = |name: &str| {
         let found = layer.channel_data.list.iter().find(|channel| channel.name.eq_case_insensitive(name));
         let found = found.ok_or_else(|| format!("it has no channel {name}"))?;
@@ -60,14 +75,15 @@ pub(super) fn decode(bytes: &[u8], size: [u32; 3], precision: Precision) -> Resu
             _ => Err(format!("channel {name} is not of {precision}")),
         }
     };
-    let ([r, g, b], row_length) = ([channel("R")?, channel("G")?, channel("B")?], expected.0 as u32);
+    let [r, g, b] = [channel("R")?, channel("G")?, channel("B")?];
     // The picture's pixel of each texel, in the table's order.
-    let texel = |at: u32| {
-        let (x, y, slice) = (at % size[0], at / size[0] % size[1], at / (size[0] * size[1]));
-        let (tile_x, tile_y) = (slice % columns * size[0], slice / columns * size[1]);
-        let pixel = ((tile_y + y) * row_length + tile_x + x) as usize;
+    let ([width, height, depth], columns) = (size.map(|side| side as usize), columns as usize);
+    let texel = |at: usize| {
+        let (x, y, slice) = (at % width, at / width % height, at / (width * height));
+        let (tile_x, tile_y) = (slice % columns * width, slice / columns * height);
+        let pixel = (tile_y + y) * expected.0 + tile_x + x;
         [r[pixel], g[pixel], b[pixel]]
     };
-    let texels = (0..size.iter().product()).map(texel).collect();
+    let texels = (0..width * height * depth).map(texel).collect();
     Ok(Table::new(size, texels))
 }
