@@ -1,8 +1,10 @@
-//! Random scene files, read, planned and rendered with small tables until one breaks a law or all are done. The long form of
-//! `tests/random_scenes.rs`.
+//! Random scenes, rendered with small tables until so many have kept the laws. The long form of `tests/random_scenes.rs`.
 //!
-//! `cargo run --release --example random_scenes -- COUNT [ONE_IN]`: one in `ONE_IN` of those that can be planned is rendered,
-//! by default all.
+//! `cargo run --release --example random_scenes -- COUNT [VALUES] [SEED]`
+//!
+//! Nearly all of the time of a random scene is the compiling of its shaders. Few are drawn whole, therefore, and each of them
+//! is rendered with VALUES other sets of numbers (by default 1000), which mostly need the same shaders. What breaks a law is
+//! made small and kept in `tests/regressions/`.
 
 #[path = "../tests/hard_cases/laws.rs"]
 #[allow(dead_code)]
@@ -10,22 +12,152 @@ mod laws;
 #[path = "../tests/scene_strategy/mod.rs"]
 mod scene_strategy;
 
-use proptest::test_runner::{Config, TestRng};
-use scene_strategy::trial::try_scenes;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+use std::{fs, io};
+
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use scene_strategy::shrink::shrunk;
+use scene_strategy::trial::{Fate, Fates, fate, keep};
+use scene_strategy::values::with_other_numbers;
 use welkin::gpu::DeviceRequest;
 use welkin::renderer::Renderer;
 
-fn main() {
-    let mut words =
-        std::env::args().skip(1).map(|word| word.parse::<u32>().unwrap_or_else(|error| panic!("{word}: {error}")));
-    let (count, one_in) = (words.next().expect("how many scenes"), words.next().unwrap_or(1));
-    let renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
-    let random = TestRng::from_seed(Config::default().rng_algorithm, &std::process::id().to_le_bytes().repeat(8));
-    match try_scenes(renderer, count, one_in as usize, random) {
-        Ok(fates) => println!("{fates:?}"),
-        Err(failure) => {
-            eprintln!("{failure}");
-            std::process::exit(1);
+/// A scene whose numbers ask for ever new shaders is left after so many.
+const MOST_PIPELINES: u64 = 60;
+/// Trials of making a failing scene small.
+const TRIALS: usize = 300;
+/// Share of the fields of an example scene that a random one's take the place of.
+const CROSSED: f64 = 0.25;
+
+fn main() -> ExitCode {
+    let mut words = std::env::args().skip(1).map(|word| word.parse().unwrap_or_else(|error| panic!("{word}: {error}")));
+    let count = words.next().expect("how many scenes");
+    let values = words.next().unwrap_or(1000);
+    let seed = words.next().unwrap_or(std::process::id() as usize);
+    let mut sweep = Sweep::new(seed);
+    while sweep.rendered() < count {
+        sweep.structure(count, values);
+    }
+    println!("{:?} of {} scenes drawn whole; {} broke a law", sweep.fates, sweep.structures, sweep.failures);
+    if sweep.failures == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+struct Sweep {
+    renderer: Renderer,
+    runner: TestRunner,
+    schema: serde_json::Value,
+    /// The example scenes.
+    known: Vec<toml::Table>,
+    fates: Fates,
+    structures: usize,
+    failures: usize,
+    began: Instant,
+}
+
+impl Sweep {
+    fn new(seed: usize) -> Self {
+        let renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
+        let random = TestRng::from_seed(RngAlgorithm::ChaCha, &seed.to_le_bytes().repeat(4));
+        let mut known = Vec::new();
+        collect(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes"), &mut known).expect("the example scenes");
+        Self {
+            renderer,
+            runner: TestRunner::new_with_rng(Config::default(), random),
+            schema: welkin::scene::schema(),
+            known,
+            fates: Fates::new(),
+            structures: 0,
+            failures: 0,
+            began: Instant::now(),
         }
     }
+
+    fn rendered(&self) -> usize {
+        self.fates.get(&Fate::Rendered).copied().unwrap_or(0)
+    }
+
+    fn draw<S: Strategy>(&mut self, strategy: S) -> S::Value {
+        strategy.new_tree(&mut self.runner).expect("nothing is filtered").current()
+    }
+
+    /// A scene drawn whole: every second one an example with some fields of a random scene.
+    fn whole(&mut self) -> toml::Table {
+        let random = self.draw(scene_strategy::scene_file());
+        if self.structures.is_multiple_of(2) {
+            return random;
+        }
+        let index = self.draw(0..self.known.len());
+        let mut table = self.known[index].clone();
+        for (name, value) in random {
+            if self.draw(prop::bool::weighted(CROSSED)) {
+                table.insert(name, value);
+            }
+        }
+        if let Some(toml::Value::Table(camera)) = table.get_mut("camera") {
+            for side in ["width", "height"] {
+                camera.insert(side.to_owned(), toml::Value::Integer(3));
+            }
+        }
+        table
+    }
+
+    /// One scene drawn whole, with many sets of numbers.
+    fn structure(&mut self, count: usize, values: usize) {
+        let (whole, began, compiled) = (self.whole(), Instant::now(), self.renderer.compiled_pipelines());
+        self.structures += 1;
+        if !matches!(fate(&mut self.renderer, &whole.to_string(), false), Ok(Fate::Planned)) {
+            return;
+        }
+        let before = self.rendered();
+        let mut table = whole.clone();
+        for _ in 0..values {
+            if self.rendered() == count || self.renderer.compiled_pipelines() - compiled > MOST_PIPELINES {
+                break;
+            }
+            match fate(&mut self.renderer, &table.to_string(), true) {
+                Ok(fate) => *self.fates.entry(fate).or_default() += 1,
+                Err(words) => {
+                    self.fail(table, &words);
+                    break;
+                }
+            }
+            table = with_other_numbers(&self.schema, &whole, &mut self.runner);
+        }
+        eprintln!(
+            "{} of {count} in {:.0} s: {} with {} pipelines in {:.1} s; {:?}",
+            self.rendered(),
+            self.began.elapsed().as_secs_f64(),
+            self.rendered() - before,
+            self.renderer.compiled_pipelines() - compiled,
+            began.elapsed().as_secs_f64(),
+            self.fates
+        );
+    }
+
+    fn fail(&mut self, table: toml::Table, words: &str) {
+        self.failures += 1;
+        eprintln!("{words}");
+        let renderer = &mut self.renderer;
+        let small = shrunk(table, TRIALS, |table| fate(renderer, &table.to_string(), true).is_err());
+        let why = fate(renderer, &small.to_string(), true).err().unwrap_or_else(|| words.to_owned());
+        eprintln!("{}", keep(&small, &why));
+    }
+}
+
+/// All scene files below a folder.
+fn collect(folder: &Path, tables: &mut Vec<toml::Table>) -> io::Result<()> {
+    let mut paths: Vec<_> = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
+    paths.sort();
+    for path in paths {
+        if path.is_dir() {
+            collect(&path, tables)?;
+        } else if let Ok(table) = fs::read_to_string(&path)?.parse() {
+            tables.push(table);
+        }
+    }
+    Ok(())
 }

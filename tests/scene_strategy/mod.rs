@@ -3,7 +3,9 @@
 
 #![allow(dead_code, reason = "the test and the command use different parts")]
 
+pub mod shrink;
 pub mod trial;
+pub mod values;
 
 use std::str::FromStr;
 

@@ -3,6 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::fs;
+use std::panic::AssertUnwindSafe;
 use std::path::{Path, PathBuf};
 
 use proptest::test_runner::{Config, TestCaseError, TestError, TestRng, TestRunner};
@@ -79,7 +80,8 @@ fn read(text: &str) -> Result<(Fate, Option<Scene>), String> {
 pub fn fate(renderer: &mut Renderer, text: &str, is_rendered: bool) -> Result<Fate, String> {
     let (fate, scene) = read(text)?;
     let Some(scene) = scene.filter(|_| is_rendered) else { return Ok(fate) };
-    match renderer.render(&scene, tiny(), CAPTURE) {
+    let rendered = std::panic::catch_unwind(AssertUnwindSafe(|| renderer.render(&scene, tiny(), CAPTURE)));
+    match rendered.map_err(|_| "the renderer panics".to_owned())? {
         Ok(rendered) => match laws::broken(&scene, &rendered.frame).first() {
             Some(broken) => Err(broken.to_string()),
             None => Ok(Fate::Rendered),
@@ -93,6 +95,15 @@ pub fn fate(renderer: &mut Renderer, text: &str, is_rendered: bool) -> Result<Fa
 /// Where scenes are kept that failed.
 pub fn regressions() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/regressions")
+}
+
+/// Keeps a scene that failed, with why in its first line; says where, and why in full.
+pub fn keep(table: &toml::Table, words: &str) -> String {
+    let text = table.to_string();
+    let path = regressions().join(format!("{:08x}.toml", crc32fast::hash(text.as_bytes())));
+    let first_line = words.lines().next().unwrap_or_default();
+    let kept = fs::write(&path, format!("# {first_line}\n{text}"));
+    format!("{} ({kept:?}): {words}\n{text}", path.display())
 }
 
 /// Tries so many random scene files and renders one in `one_in` of those that can be planned.
@@ -122,11 +133,7 @@ pub fn try_scenes(renderer: Renderer, count: u32, one_in: usize, random: TestRng
         Ok(()) => Ok(fates.into_inner()),
         Err(TestError::Abort(reason)) => Err(reason.to_string()),
         Err(TestError::Fail(reason, table)) => {
-            let text = table.to_string();
-            let path = regressions().join(format!("{:08x}.toml", crc32fast::hash(text.as_bytes())));
-            let first_line = reason.message().lines().next().unwrap_or_default();
-            let kept = fs::write(&path, format!("# {first_line}\n{text}"));
-            Err(format!("{} ({kept:?}), after {:?}: {reason}\n{text}", path.display(), fates.borrow()))
+            Err(format!("{} after {:?}", keep(&table, reason.message()), fates.borrow()))
         }
     }
 }
