@@ -12,7 +12,7 @@ mod table;
 use std::path::PathBuf;
 
 use hard_cases::judge::{Judgement, judge, render};
-use hard_cases::{Bound, Case, all, truth};
+use hard_cases::{Case, all, truth};
 use welkin::gpu::DeviceRequest;
 use welkin::plan::Quality;
 use welkin::renderer::Renderer;
@@ -49,9 +49,7 @@ fn main() {
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
     let cases: Vec<Case> = all().into_iter().filter(|case| case.name.contains(&options.part)).collect();
     let walks = if options.long { LONG_WALKS } else { WALKS };
-    let truth_of =
-        |case: &Case| (!matches!(case.bound, Bound::LawsOnly(_))).then(|| truth::trace(&case.scene(), walks));
-    let truths: Vec<_> = cases.iter().map(truth_of).collect();
+    let truths: Vec<_> = cases.iter().map(|case| truth::of(case, walks)).collect();
     let mut columns: Vec<Vec<Judgement>> = Vec::new();
     for &quality in &options.qualities {
         let (mut column, mut frames) = (Vec::new(), Vec::new());

@@ -87,6 +87,7 @@ fn cell(found: &Judgement) -> String {
         (Some(radiance), Some(transmittance)) => {
             format!("{:.2} ± {:.2} / {:.3}{mark}", radiance.percent, radiance.noise_percent, transmittance.percent)
         }
+        (Some(radiance), None) => format!("{:.2} ± {:.2}{mark}", radiance.percent, radiance.noise_percent),
         _ => format!("holds{mark}").replace("holds **", "**"),
     }
 }

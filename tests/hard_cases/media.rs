@@ -3,7 +3,6 @@
 use super::{Bound, Case};
 
 const TOO_THICK: &str = "the light comes from a layer near the top that is thinner than a row of the tables";
-const BACKWARD: &str = "a peak of light that is thrown back falls between the directions of the source table";
 const JUMPS: &str = "the rays' quadrature does not see where a layer begins and ends (docs/accuracy.md)";
 
 pub fn cases() -> Vec<Case> {
@@ -41,7 +40,8 @@ fn optical_depths() -> Vec<Case> {
     let thin = [1e-6, 1e-3, 1.0].map(|depth| Case::new(format!("optical depth {depth:e}"), of(depth)));
     let from_space = "camera.altitude_m = 4e5\ncamera.elevation_deg = -50\n";
     let thick = [1e2, 1e4, 1e6].map(|depth| {
-        Case::new(format!("optical depth {depth:e} from space"), from_space.to_owned() + &of(depth)).misses(TOO_THICK)
+        let case = Case::new(format!("optical depth {depth:e} from space"), from_space.to_owned() + &of(depth));
+        if depth > 1e5 { case.misses(TOO_THICK) } else { case }
     });
     let inside = Case::new("optical depth 1e6 from below", of(1e6));
     thin.into_iter().chain(thick).chain([inside]).collect()
@@ -50,11 +50,10 @@ fn optical_depths() -> Vec<Case> {
 /// Ten times the preset's haze with another phase function.
 fn asymmetries() -> Vec<Case> {
     let of = |g: f64| {
-        let case = Case::new(
+        Case::new(
             format!("haze, g = {g}"),
             format!("[medium.mie]\ndensity_factor = 10\nphase.henyey_greenstein.g = {g}"),
-        );
-        if g < -0.9 { case.misses(BACKWARD) } else { case }
+        )
     };
     [0.0, 0.5, -0.5, 0.99, -0.99, 0.9999, -0.9999].map(of).into()
 }

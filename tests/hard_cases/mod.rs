@@ -4,10 +4,12 @@
 #![allow(dead_code, reason = "the test and the command use different parts")]
 
 mod cameras;
+mod clouds;
 mod lights;
 mod media;
 mod pictures;
 mod planets;
+mod volumes;
 
 pub mod furnace;
 pub mod judge;
@@ -31,6 +33,8 @@ pub struct Case {
     pub bound: Bound,
     /// Whether it is one of the few that the quick form holds to the path tracer too.
     pub is_quick: bool,
+    /// Whether it needs shaders of its own that take long to compile: only the command renders it.
+    pub is_long: bool,
     /// Why its bound is known not to hold.
     pub known_miss: Option<&'static str>,
 }
@@ -74,7 +78,15 @@ impl Case {
     /// A case by day with the qualities' own settings.
     fn new(name: impl Into<String>, edit: impl Into<String>) -> Self {
         let (name, edit) = (name.into(), edit.into());
-        Self { name, edit, settings: |settings| settings, bound: Bound::Day, is_quick: false, known_miss: None }
+        Self {
+            name,
+            edit,
+            settings: |settings| settings,
+            bound: Bound::Day,
+            is_quick: false,
+            is_long: false,
+            known_miss: None,
+        }
     }
 
     fn bound(self, bound: Bound) -> Self {
@@ -89,6 +101,11 @@ impl Case {
     /// One of the few that the quick form holds to the path tracer.
     fn quick(self) -> Self {
         Self { is_quick: true, ..self }
+    }
+
+    /// With shaders of its own that take long to compile.
+    fn long(self) -> Self {
+        Self { is_long: true, ..self }
     }
 
     /// The scene as a file.
@@ -125,10 +142,8 @@ impl Bound {
 
 /// Every case, in the order of the table.
 pub fn all() -> Vec<Case> {
-    [cameras::cases(), lights::cases(), media::cases(), planets::cases(), pictures::cases()]
-        .into_iter()
-        .flatten()
-        .collect()
+    let of_air = [cameras::cases(), lights::cases(), media::cases(), planets::cases(), pictures::cases()];
+    of_air.into_iter().chain([clouds::cases(), volumes::cases()]).flatten().collect()
 }
 
 /// The case of a name.

@@ -8,6 +8,8 @@ use welkin::reference::{Effort, World};
 use welkin::scene::{Light, Scene};
 use welkin_lut::mapping::SkyViewMapping;
 
+use super::{Bound, Case};
+
 /// Where pixels are compared, in shares of the picture's width and height.
 const PLACES: [[f64; 2]; 6] = [[0.1, 0.15], [0.5, 0.05], [0.9, 0.35], [0.2, 0.6], [0.4, 0.95], [0.85, 0.8]];
 /// Pixels that the horizon or a disc comes closer to than this are mixed of two things, pixels.
@@ -65,6 +67,11 @@ pub fn rays(scene: &Scene, pixels: &[[u32; 2]], distance_m: f64) -> Vec<Ray> {
         }
     };
     pixels.iter().map(ray).collect()
+}
+
+/// What the reference says of a case, where it is held to that.
+pub fn of(case: &Case, walks: u64) -> Option<Truth> {
+    (!matches!(case.bound, Bound::LawsOnly(_))).then(|| trace(&case.scene(), walks))
 }
 
 /// Traces those pixels.
