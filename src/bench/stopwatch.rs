@@ -36,14 +36,43 @@ pub fn peak_memory_bytes() -> Option<u64> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::process::Command;
     use std::time::Duration;
+
+    use cpu_time::ThreadTime;
+
+    use super::*;
+
+    /// Named for the process that only sleeps: in this one other tests work at the same time.
+    const SLEEPER: &str = "WELKIN_TEST_SLEEPER";
 
     #[test]
     fn sleeping_costs_time_but_no_work() {
+        if std::env::var_os(SLEEPER).is_some() {
+            let stopwatch = Stopwatch::start();
+            std::thread::sleep(Duration::from_millis(200));
+            assert!(stopwatch.wall_ms() >= 200.0 && stopwatch.processor_ms() < 100.0);
+            return;
+        }
+        let this_test = "bench::stopwatch::tests::sleeping_costs_time_but_no_work";
+        let mut alone = Command::new(std::env::current_exe().unwrap());
+        let output = alone.args(["--exact", this_test]).env(SLEEPER, "1").output().unwrap();
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success() && said.contains("1 passed"), "{said}");
+    }
+
+    #[test]
+    fn work_of_every_thread_is_counted() {
         let stopwatch = Stopwatch::start();
-        std::thread::sleep(Duration::from_millis(60));
-        assert!(stopwatch.wall_ms() >= 60.0 && stopwatch.processor_ms() < stopwatch.wall_ms());
+        std::thread::scope(|scope| {
+            for _ in 0..2 {
+                scope.spawn(|| {
+                    let own = ThreadTime::now();
+                    while own.elapsed() < Duration::from_millis(30) {}
+                });
+            }
+        });
+        assert!(stopwatch.processor_ms() >= 60.0);
     }
 
     #[cfg(target_os = "linux")]
