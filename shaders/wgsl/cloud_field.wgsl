@@ -141,8 +141,8 @@ fn erosion_at(layer: u32, place: vec3<f32>, height: f32) -> f32 {
     return 1.0 - billows + (2.0 * billows - 1.0) * wisps;
 }
 
-// Density of a layer relative to its extinction, in [0, 1].
-fn layer_density(layer: u32, map: vec2<f32>, altitude_m: f32) -> f32 {
+// What there is of a layer before it is eroded; where this is not above 0 the layer is empty.
+fn layer_body(layer: u32, map: vec2<f32>, altitude_m: f32) -> f32 {
     let up_m = altitude_m - cloud_layers[layer].base_m;
     let height = up_m / cloud_layers[layer].thickness_m;
     if !(height >= 0.0 && height <= 1.0) {
@@ -159,16 +159,24 @@ fn layer_density(layer: u32, map: vec2<f32>, altitude_m: f32) -> f32 {
     if present <= 0.0 {
         return 0.0;
     }
-    let place = vec3<f32>(uv, up_m);
-    let tiles = place * cloud_layers[layer].shape_per_m + cloud_layers[layer].shape_offset;
+    let tiles = vec3<f32>(uv, up_m) * cloud_layers[layer].shape_per_m + cloud_layers[layer].shape_offset;
     let shape = volume(cloud_shape_volume, SHAPE_TEXELS, tiles);
     var body = shape * gradient + column.coverage - 1.0;
 #ifdef CLOUD_ANVIL
     body = max(body, shape * anvil + column.anvil - 1.0);
 #endif
+    return body;
+}
+
+// Density of a layer relative to its extinction, in [0, 1].
+fn layer_density(layer: u32, map: vec2<f32>, altitude_m: f32) -> f32 {
+    let body = layer_body(layer, map, altitude_m);
     if body <= 0.0 {
         return 0.0;
     }
+    let up_m = altitude_m - cloud_layers[layer].base_m;
+    let height = up_m / cloud_layers[layer].thickness_m;
+    let place = vec3<f32>(along_and_across(layer, map), up_m);
     let eaten = cloud_layers[layer].erosion * erosion_at(layer, place, height);
     let density = saturate(cloud_layers[layer].edge * max((body - eaten) / (1.0 - eaten), 0.0));
     return density * mix(cloud_layers[layer].water_at_base, 1.0, height);

@@ -1,7 +1,7 @@
 #define_import_path welkin::cloud_step
 // A march's step through clouds: all layers at a point.
 
-#import welkin::cloud_field::{cloud_layers, layer_density, CLOUD_LAYER_COUNT}
+#import welkin::cloud_field::{cloud_layers, layer_body, layer_density, CLOUD_LAYER_COUNT}
 #import welkin::cloud_source::{step_radiance, Sample, PHASE_COUNT}
 
 fn is_inside(layer: u32, altitude: f32) -> bool {
@@ -19,6 +19,15 @@ fn is_in_clouds(altitude: f32) -> bool {
 
 fn layer_extinction(layer: u32, map: vec2<f32>, altitude: f32) -> f32 {
     return cloud_layers[layer].extinction_per_m * layer_density(layer, map, altitude);
+}
+
+// Whether there may be clouds: before erosion there are some.
+fn may_be_cloudy(map: vec2<f32>, altitude: f32) -> bool {
+    var may_be = false;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        may_be = may_be || (is_inside(layer, altitude) && layer_body(layer, map, altitude) > 0.0);
+    }
+    return may_be;
 }
 
 fn cloud_extinction(map: vec2<f32>, altitude: f32) -> f32 {

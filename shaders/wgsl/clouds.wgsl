@@ -14,10 +14,10 @@
 #import welkin::cloud_frame::cloud_frame
 #import welkin::cloud_skip::empty_m
 #import welkin::cloud_source::{phases, PHASE_COUNT}
-#import welkin::cloud_step::{cloud_extinction, from_clouds, is_in_clouds, is_inside, CloudStep}
+#import welkin::cloud_step::{cloud_extinction, from_clouds, is_in_clouds, is_inside, may_be_cloudy, CloudStep}
 #import welkin::media_march::{
-    altitude_m, clear_air, growth_behind, leave_air, left_on_surface, next_crossing_m, pass_air, place_in_step, position_m,
-    ray_of, Air, Ray, NEVER_M, OPAQUE,
+    altitude_m, clear_air, follow_air, growth_behind, leave_air, left_on_surface, next_crossing_m, pass_air, place_in_step,
+    position_m, ray_of, through_air, Air, Ray, NEVER_M, OPAQUE,
 }
 
 // Light of the clouds at the observer, and their transmittance.
@@ -37,6 +37,8 @@ const INFINITY_BITS: u32 = 0x7f800000u;
 const BLOCK: u32 = #{CLOUD_BLOCK}u;
 const MAX_STEPS: u32 = #{CLOUD_MAX_STEPS}u;
 const STEP_M: f32 = #{CLOUD_STEP_M}.0;
+// Steps between two looks for a longer way that is empty.
+const LOOKS: u32 = 8u;
 const STEP_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
 
 struct Sum {
@@ -47,24 +49,17 @@ struct Sum {
     weighted_m: f32,
 }
 
-// One step through the layers at a point; returns whether there was any cloud.
-fn take_step(
-    sum: ptr<function, Sum>, ray: ptr<function, Ray>, phase: ptr<function, array<f32, PHASE_COUNT>>, through_air: vec3<f32>,
-    at_m: f32, step_m: f32
-) -> bool {
-    let p = position_m(ray, at_m);
-    let map = to_map(atmosphere.radius_m, p);
-    let altitude = altitude_m(ray, at_m);
-    let extinction = cloud_extinction(map, altitude);
-    if extinction <= 0.0 {
-        return false;
-    }
-    let up = normalize(vec3<f32>(p.xy, p.z + atmosphere.radius_m));
-    let step = CloudStep(map, altitude, up, extinction, (*sum).clouds, extinction * step_m);
-    (*sum).radiance += through_air * from_clouds(step, (*ray).direction, phase);
-    (*sum).weighted_m += at_m * (exp(-(*sum).clouds) - exp(-(*sum).clouds - step.within));
-    (*sum).clouds += step.within;
-    return true;
+// Where a march is.
+struct March {
+    t_m: f32,
+    steps: u32,
+    // The next crossing of a layer's base or top, and the last.
+    boundary_m: f32,
+    entered_m: f32,
+    // The step from t_m: its length and the extinction in it.
+    step_m: f32,
+    extinction: f32,
+    was_empty: bool,
 }
 
 // How far nothing need be looked at from a point, in the layers that hold another altitude: at a boundary the point's
@@ -79,6 +74,85 @@ fn skip_m(map: vec2<f32>, altitude: f32, within: f32) -> f32 {
     return least;
 }
 
+// Goes on to the next step with a cloud in it, behind an optical depth of clouds; returns whether there is one.
+//
+// Light is left to who asks, erosion to the outer loop and steps through what is empty to the inner: lanes that march beside each other
+// do each together, however few of them meet a cloud at the same step (Aila & Laine 2009, Understanding the efficiency of ray
+// traversal on GPUs).
+fn find_cloud(march: ptr<function, March>, ray: ptr<function, Ray>, offset: f32, clouds: f32) -> bool {
+    let growth = growth_behind(clouds);
+    while (*march).steps < MAX_STEPS && (*march).t_m < (*ray).end_m {
+        let t_m = (*march).t_m;
+        if t_m >= (*march).boundary_m {
+            (*march).boundary_m = next_crossing_m(ray, t_m);
+            (*march).entered_m = t_m;
+        }
+        let boundary_m = (*march).boundary_m;
+        if boundary_m >= NEVER_M {
+            return false;
+        }
+        // Between boundaries the middle tells which layers the ray is in.
+        let middle = altitude_m(ray, 0.5 * (t_m + boundary_m));
+        if !is_in_clouds(middle) {
+            (*march).t_m = boundary_m;
+            (*march).steps += 1u;
+            (*march).was_empty = true;
+            continue;
+        }
+        if (*march).was_empty {
+            let map = to_map(atmosphere.radius_m, position_m(ray, t_m));
+            (*march).t_m += min(skip_m(map, altitude_m(ray, t_m), middle), boundary_m - t_m);
+        }
+        if look_ahead(march, ray, offset, growth) {
+            let at_m = (*march).t_m + offset * (*march).step_m;
+            let map = to_map(atmosphere.radius_m, position_m(ray, at_m));
+            (*march).extinction = cloud_extinction(map, altitude_m(ray, at_m));
+            (*march).was_empty = (*march).extinction <= 0.0;
+            if !(*march).was_empty {
+                return true;
+            }
+            (*march).t_m += (*march).step_m;
+        }
+    }
+    return false;
+}
+
+// Takes some steps through what is empty even before erosion; returns whether it stands before one that is not.
+fn look_ahead(march: ptr<function, March>, ray: ptr<function, Ray>, offset: f32, growth: f32) -> bool {
+    let boundary_m = (*march).boundary_m;
+    // Seen from far above, a layer still takes a few steps.
+    let longest_m = max(0.125 * (boundary_m - (*march).entered_m), STEP_M);
+    for (var i = 0u; i < LOOKS && (*march).t_m < boundary_m; i++) {
+        let t_m = (*march).t_m;
+        let step_m = min(min(growth * max(STEP_M, STEP_GROWTH * t_m), longest_m), boundary_m - t_m);
+        let at_m = t_m + offset * step_m;
+        (*march).steps += 1u;
+        (*march).step_m = step_m;
+        if may_be_cloudy(to_map(atmosphere.radius_m, position_m(ray, at_m)), altitude_m(ray, at_m)) {
+            return true;
+        }
+        (*march).was_empty = true;
+        (*march).t_m += step_m;
+    }
+    return false;
+}
+
+// Adds the light of the step that a march is at.
+fn add_light(
+    sum: ptr<function, Sum>, march: ptr<function, March>, ray: ptr<function, Ray>,
+    phase: ptr<function, array<f32, PHASE_COUNT>>, air: ptr<function, Air>, offset: f32
+) {
+    let at_m = (*march).t_m + offset * (*march).step_m;
+    let p = position_m(ray, at_m);
+    let up = normalize(vec3<f32>(p.xy, p.z + atmosphere.radius_m));
+    let within = (*march).extinction * (*march).step_m;
+    let map = to_map(atmosphere.radius_m, p);
+    let step = CloudStep(map, altitude_m(ray, at_m), up, (*march).extinction, (*sum).clouds, within);
+    (*sum).radiance += through_air(air, at_m) * from_clouds(step, (*ray).direction, phase);
+    (*sum).weighted_m += at_m * (exp(-(*sum).clouds) - exp(-(*sum).clouds - within));
+    (*sum).clouds += within;
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= textureDimensions(cloud_radiance_image)) {
@@ -90,51 +164,25 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let offset = place_in_step(pixel, cloud_frame.jitter);
     var sum: Sum;
     var air = clear_air();
-    var t_m = 0.0;
-    var boundary_m = next_crossing_m(&ray, t_m);
-    var entered_m = 0.0;
-    var was_empty = true;
-    for (var i = 0u; i < MAX_STEPS && t_m < ray.end_m && sum.clouds < OPAQUE; i++) {
-        if t_m >= boundary_m {
-            boundary_m = next_crossing_m(&ray, t_m);
-            entered_m = t_m;
-        }
-        if boundary_m >= NEVER_M {
-            break;
-        }
-        // Between boundaries the middle tells which layers the ray is in.
-        let middle = altitude_m(&ray, 0.5 * (t_m + boundary_m));
-        if !is_in_clouds(middle) {
-            pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), t_m, boundary_m);
-            t_m = boundary_m;
-            was_empty = true;
-            continue;
-        }
-        // Seen from far above, a layer still takes a few steps.
-        let longest_m = max(0.125 * (boundary_m - entered_m), STEP_M);
-        let growth = growth_behind(sum.clouds);
-        let step_m = min(min(growth * max(STEP_M, STEP_GROWTH * t_m), longest_m), boundary_m - t_m);
-        if was_empty {
-            let map = to_map(atmosphere.radius_m, position_m(&ray, t_m));
-            let skipped = min(skip_m(map, altitude_m(&ray, t_m), middle), boundary_m - t_m);
-            if skipped > step_m {
-                pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), t_m, t_m + skipped);
-                t_m += skipped;
-                continue;
-            }
-        }
-        was_empty = !take_step(&sum, &ray, &phase, exp(-air.depth), t_m + offset * step_m, step_m);
-        pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), t_m, t_m + step_m);
-        t_m += step_m;
+    var march: March;
+    march.was_empty = true;
+    march.boundary_m = next_crossing_m(&ray, 0.0);
+    while sum.clouds < OPAQUE && find_cloud(&march, &ray, offset, sum.clouds) {
+        pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), march.t_m);
+        add_light(&sum, &march, &ray, &phase, &air, offset);
+        march.t_m += march.step_m;
+        pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), march.t_m);
     }
+    pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), march.t_m);
     var ground = vec2<f32>(1.0);
     if ray.end_m < NEVER_M {
-        pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), t_m, ray.end_m);
+        pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), ray.end_m);
+        follow_air(&air, &ray);
         let end = to_map(atmosphere.radius_m, position_m(&ray, ray.end_m));
         let altitude = max(altitude_m(&ray, ray.end_m), 0.0);
         ground = left_on_surface(&air, end, altitude);
     } else {
-        leave_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), t_m);
+        leave_air(&air, &ray, vec3<f32>(exp(-sum.clouds)));
     }
     let transmittance = select(exp(-sum.clouds), 0.0, sum.clouds >= OPAQUE);
 #ifdef CLOUD_DISTANCE

@@ -16,8 +16,8 @@
 #import welkin::media_between::{between, next_boundary_m, Between}
 #import welkin::media_ground::{fog_share, ground_lit_by_lamps, volume_share}
 #import welkin::media_march::{
-    altitude_m, clear_air, growth_behind, leave_air, left_on_surface, observer_position, pass_air, place_in_step, position_m,
-    ray_of, Air, Ray, NEVER_M, OPAQUE,
+    altitude_m, clear_air, follow_air, growth_behind, leave_air, left_on_surface, observer_position, pass_air, place_in_step,
+    position_m, ray_of, through_air, Air, Ray, NEVER_M, OPAQUE,
 }
 #import welkin::volume_field::{fog_density, place_of, volumes, Place, FOG_COUNT, VOLUME_COUNT}
 #import welkin::volume_source::{from_lights, mean_through, seen, Piece, Stretch}
@@ -193,7 +193,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         let before = vec3<f32>(sum.clouds) + sum.local;
         if here.detail_m >= NEVER_M {
-            pass_air(&air, &ray, exp(-before), t_m, boundary_m);
+            follow_air(&air, &ray);
+            pass_air(&air, &ray, exp(-before), boundary_m);
             t_m = boundary_m;
             continue;
         }
@@ -203,7 +204,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let step = next_step(&ray, t_m, boundary_m, here, growth_behind(greatest(before)), select(0.5, offset, here.uneven));
         let own = step.extinction * step.length_m;
         var within = own;
-        let through_air = exp(-air.depth);
+        let air_leaves = through_air(&air, t_m);
 #ifdef CLOUDS
         let at = step.place;
         let cloudy = select(0.0, cloud_extinction(at.map, at.altitude_m), here.clouds);
@@ -215,9 +216,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             let up = normalize(vec3<f32>(at.p.xy, at.p.z + atmosphere.radius_m));
             let clouds = CloudStep(at.map, at.altitude_m, up, cloudy, sum.clouds, cloudy * step.length_m);
             let light = from_clouds(clouds, ray.direction, &phase);
-            sum.radiance += through_air * exp(-sum.local) * mean_through(own) * light;
+            sum.radiance += air_leaves * exp(-sum.local) * mean_through(own) * light;
 #if LOCAL_LIGHT_COUNT > 0
-            sum.radiance += through_air * clouds_lit_by_lamps(at, cloudy, stretch, here.cluster);
+            sum.radiance += air_leaves * clouds_lit_by_lamps(at, cloudy, stretch, here.cluster);
 #endif
             sum.clouds += cloudy * step.length_m;
         }
@@ -226,17 +227,18 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         for (var index = next_member(&media); index != NONE; index = next_member(&media)) {
             let density = fog_density(index, step.place, step.half_rise_m);
             if density > 0.0 {
-                sum.radiance += through_air * from_volume(Piece(index, density, step.place), stretch, ray.pixel, here.cluster);
+                sum.radiance += air_leaves * from_volume(Piece(index, density, step.place), stretch, ray.pixel, here.cluster);
             }
         }
         sum.local += own;
-        pass_air(&air, &ray, exp(-sum.clouds - sum.local), t_m, t_m + step.length_m);
         t_m += step.length_m;
+        pass_air(&air, &ray, exp(-sum.clouds - sum.local), t_m);
     }
     let transmittance = exp(-sum.clouds - sum.local);
     var ground = vec2<f32>(1.0);
     if ray.end_m < NEVER_M {
-        pass_air(&air, &ray, transmittance, t_m, ray.end_m);
+        pass_air(&air, &ray, transmittance, ray.end_m);
+        follow_air(&air, &ray);
         let end = place_of(position_m(&ray, ray.end_m));
         let surface = Place(end.p, max(end.altitude_m, 0.0), end.map);
         ground = ground_share(surface, &air);
@@ -245,7 +247,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             sum.radiance += transmittance * exp(-air.depth) * atmosphere.ground_albedo / PI * lit;
         }
     } else {
-        leave_air(&air, &ray, transmittance, t_m);
+        leave_air(&air, &ray, transmittance);
     }
     let behind = transmittance * exp(-air.depth);
     textureStore(media_radiance_image, ray.pixel, vec4<f32>(sum.radiance, ground.x));

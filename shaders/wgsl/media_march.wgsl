@@ -128,10 +128,15 @@ fn place_in_step(pixel: vec2<u32>, jitter: f32) -> f32 {
     return fract(f32(hash(vec3<i32>(vec2<i32>(pixel), 0), 1u) >> 8u) / 16777216.0 + jitter);
 }
 
-// The air along a ray.
+// The air along a ray. It changes less than media do, so it is followed in strides of its own, behind the march.
 struct Air {
-    // Optical depth so far.
+    // How far it has been followed, m; its optical depth to there, and its extinction just before.
+    at_m: f32,
     depth: vec3<f32>,
+    extinction_per_m: vec3<f32>,
+    // How far the march has come, m, and int T dt over what has not been followed, T of media.
+    passed_m: f32,
+    media_m: vec3<f32>,
     // int T S dT_air, T of media and S what clouds leave of the light that the air scatters: of the beam, of diffuse light.
     beam: vec3<f32>,
     diffuse: vec3<f32>,
@@ -142,6 +147,9 @@ struct Air {
 
 fn clear_air() -> Air {
     var air: Air;
+#ifdef AIR
+    air.extinction_per_m = extinction_at(observer.altitude_m);
+#endif
 #ifdef CLOUDS
     air.clear = clear_fluxes(cloud_layers[0].base_m, observer.lights[0].direction.z);
 #endif
@@ -153,17 +161,26 @@ const AIR_STEP_M: f32 = 400.0;
 const AIR_STEP_GROWTH: f32 = 0.05;
 const AIR_STEPS: f32 = 24.0;
 
-// Moves through air alone, behind media of a transmittance.
-fn pass_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>, from_m: f32, to_m: f32) {
+fn air_step_m(air: ptr<function, Air>) -> f32 {
+    return max(AIR_STEP_M, AIR_STEP_GROWTH * (*air).at_m);
+}
+
+// Follows the air to where the march has come.
+fn follow_air(air: ptr<function, Air>, ray: ptr<function, Ray>) {
 #ifdef AIR
-    let longest_m = max(AIR_STEP_M, AIR_STEP_GROWTH * from_m);
-    let count = u32(clamp(ceil((to_m - from_m) / longest_m), 1.0, AIR_STEPS));
-    let step_m = (to_m - from_m) / f32(count);
+    let length_m = (*air).passed_m - (*air).at_m;
+    if length_m <= 0.0 {
+        return;
+    }
+    let media = (*air).media_m / length_m;
+    let count = u32(clamp(ceil(length_m / air_step_m(air)), 1.0, AIR_STEPS));
+    let step_m = length_m / f32(count);
     for (var i = 0u; i < count; i++) {
-        let middle_m = from_m + (f32(i) + 0.5) * step_m;
+        let middle_m = (*air).at_m + (f32(i) + 0.5) * step_m;
         let altitude = altitude_m(ray, middle_m);
         let before = exp(-(*air).depth);
-        (*air).depth += step_m * extinction_at(altitude);
+        (*air).extinction_per_m = extinction_at(altitude);
+        (*air).depth += step_m * (*air).extinction_per_m;
         let share = media * (before - exp(-(*air).depth));
 #ifdef CLOUDS
         let map = to_map(atmosphere.radius_m, position_m(ray, middle_m));
@@ -174,7 +191,23 @@ fn pass_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>, 
         (*air).diffuse += share;
 #endif
     }
+    (*air).at_m = (*air).passed_m;
+    (*air).media_m = vec3<f32>(0.0);
 #endif
+}
+
+// Goes on to a distance behind media of a transmittance.
+fn pass_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>, to_m: f32) {
+    (*air).media_m += media * (to_m - (*air).passed_m);
+    (*air).passed_m = to_m;
+    if to_m - (*air).at_m >= air_step_m(air) {
+        follow_air(air, ray);
+    }
+}
+
+// What the air leaves of light from a distance, at most one of its strides ahead.
+fn through_air(air: ptr<function, Air>, t_m: f32) -> vec3<f32> {
+    return exp(-(*air).depth - (*air).extinction_per_m * (t_m - (*air).at_m));
 }
 
 // What clouds leave on a point of a surface: of the first light's flux and of the sky's light.
@@ -188,9 +221,11 @@ fn left_on_surface(air: ptr<function, Air>, map: vec2<f32>, altitude: f32) -> ve
 
 // Moves on through the air beyond a distance, out into space: above all clouds, or below none. What nothing lights or hides
 // there needs no look.
-fn leave_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>, from_m: f32) {
+fn leave_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>) {
+    follow_air(air, ray);
 #ifdef AIR
 #ifdef CLOUDS
+    let from_m = (*air).passed_m;
     var at_m = from_m;
     if altitude_m(ray, from_m) > atmosphere.top_m {
         // From space, the air is still ahead or never met.

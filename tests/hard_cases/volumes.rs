@@ -5,8 +5,6 @@ use super::{Bound, Case};
 const APPROXIMATE: &str = "docs/fog.md has what light that matter scatters is off by";
 const ENDLESS: &str = "the path tracer's walks do not end in matter that takes nothing away";
 
-const BESIDE_A_LAMP: &str = "not found out yet: infinite in the pixel beside the lamp";
-
 /// A bank of fog, a ball of smoke and a lamp: numbers that the cases change.
 struct Media {
     fog_per_m: f64,
@@ -84,7 +82,7 @@ pub fn cases() -> Vec<Case> {
         exact("fog up to the camera", Media { fog_top_m: 2.0, fog_per_m: 0.1, ..BLACK }),
         laws("fog of albedo 1", Media { fog_albedo: 1.0, ..USUAL }),
         laws("fog, g = 0.9999", Media { fog_g: 0.9999, ..USUAL }),
-        laws("fog, g = -0.9999", Media { fog_g: -0.9999, ..USUAL }).misses(BESIDE_A_LAMP),
+        laws("fog, g = -0.9999", Media { fog_g: -0.9999, ..USUAL }).quick(),
         exact("a ball of 1 mm", Media { size_m: 1e-3, ..BLACK }),
         exact("a ball of 10 000 km around the camera", Media { size_m: 1e7, absorption_per_m: 1e-6, ..BLACK }),
         exact("a ball of 1e6 /m", Media { absorption_per_m: 1e6, ..BLACK }),

@@ -1,6 +1,6 @@
 //! The uniform block `sky` of the shaders that read a pack.
 
-use super::manifest::{Lobe, SkyParameters};
+use super::manifest::SkyParameters;
 use crate::BAND_COUNT;
 use crate::bake::MAX_SCATTERERS;
 use crate::phase::PhaseLobe;
@@ -21,8 +21,8 @@ pub(super) fn uniform_block(parameters: &SkyParameters) -> Vec<u8> {
         let lobes = parameters.scatterers.get(scatterer).map(|s| s.phase_function.as_slice()).unwrap_or_default();
         for index in 0..LOBES {
             let lobe = lobes.get(index).copied().unwrap_or(PhaseLobe::ABSENT.into());
-            let Lobe { scale_per_sr, quadratic, gap, slope, exponent } = lobe;
-            for value in [scale_per_sr, quadratic, gap, slope, exponent, 0.0, 0.0, 0.0] {
+            let (gap, slope, peak_nu) = PhaseLobe::from(lobe).from_peak();
+            for value in [lobe.scale_per_sr, lobe.quadratic, gap, slope, lobe.exponent, peak_nu, 0.0, 0.0] {
                 bytes.extend((value as f32).to_le_bytes());
             }
         }

@@ -41,6 +41,17 @@ impl PhaseLobe {
         Self { scale_per_sr: (1.0 - k * k) / (4.0 * PI), quadratic: 0.0, gap: 1.0 - k, slope: k, exponent: 2.0 }
     }
 
+    /// The base from where it is least, as (gap, slope, ν there): gap + slope (1 - peak ν) with a slope of at least 0.
+    ///
+    /// Shaders have it so: a lobe of g < 0 is narrow at ν = -1, where the base is the small difference of gap and 2 slope,
+    /// which f32 would lose.
+    pub fn from_peak(&self) -> (f64, f64, f64) {
+        match self.slope < 0.0 {
+            true => (self.gap + 2.0 * self.slope, -self.slope, -1.0),
+            false => (self.gap, self.slope, 1.0),
+        }
+    }
+
     /// Its part of the phase function, 1/sr, for ν in [-1, 1].
     pub fn value(&self, nu: f64) -> f64 {
         let base = self.gap + self.slope * (1.0 - nu);
@@ -99,5 +110,26 @@ mod tests {
                 assert!((sum / function.value(nu) - 1.0).abs() < 1e-12, "{function:?} at {nu}");
             }
         }
+    }
+
+    #[test]
+    fn a_peak_survives_single_precision_forward_and_backward() {
+        let value_in_f32 = |lobe: &PhaseLobe, nu: f32| {
+            let (gap, slope, peak_nu) = lobe.from_peak();
+            let base = gap as f32 + slope as f32 * (1.0 - peak_nu as f32 * nu);
+            lobe.scale_per_sr as f32 * base.powf(-lobe.exponent as f32)
+        };
+        for g in [0.9999, -0.9999, 0.5, -0.5] {
+            let function = PhaseFunction::HenyeyGreenstein { g };
+            let [lobe] = function.lobes()[..] else { panic!("one lobe") };
+            for nu in [1.0, -1.0, 1.0 - f32::EPSILON, f32::EPSILON - 1.0, 0.3] {
+                let error = f64::from(value_in_f32(&lobe, nu)) / function.value(nu.into()) - 1.0;
+                assert!(error.abs() < 2e-6, "g = {g} at {nu}: {error}");
+            }
+        }
+        // The control: the same lobe from ν = 1, whatever its g.
+        let [lobe] = PhaseFunction::HenyeyGreenstein { g: -0.9999 }.lobes()[..] else { panic!("one lobe") };
+        let base = lobe.gap as f32 + lobe.slope as f32 * 2.0;
+        assert!((f64::from(base) / 1e-8 - 1.0).abs() > 0.1, "{base}");
     }
 }

@@ -11,7 +11,7 @@ use crate::plan::Facts;
 /// Lobes that a constituent has room for: WGSL `MAX_LOBES`.
 const MAX_LOBES: usize = 2;
 
-/// WGSL `PhaseLobe`: scale (1 + quadratic ν²) (gap + slope (1 - ν))^(-exponent).
+/// WGSL `PhaseLobe`: scale (1 + quadratic ν²) (gap + slope (1 - peak ν))^(-exponent).
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub(super) struct PhaseLobeBlock {
@@ -20,7 +20,8 @@ pub(super) struct PhaseLobeBlock {
     pub(super) gap: f32,
     pub(super) slope: f32,
     pub(super) exponent: f32,
-    pub(super) padding: [f32; 3],
+    pub(super) peak_nu: f32,
+    pub(super) padding: [f32; 2],
 }
 
 /// WGSL `Constituent`.
@@ -48,8 +49,15 @@ pub(super) struct AtmosphereHeader {
 
 impl PhaseLobeBlock {
     /// A lobe that is not there must still have a base whose logarithm is finite.
-    pub(super) const ABSENT: Self =
-        Self { scale_per_sr: 0.0, quadratic: 0.0, gap: 1.0, slope: 0.0, exponent: 0.0, padding: [0.0; 3] };
+    pub(super) const ABSENT: Self = Self {
+        scale_per_sr: 0.0,
+        quadratic: 0.0,
+        gap: 1.0,
+        slope: 0.0,
+        exponent: 0.0,
+        peak_nu: 1.0,
+        padding: [0.0; 2],
+    };
 
     /// The lobe with another strength.
     pub(super) fn times(self, strength: f64) -> Self {
@@ -59,13 +67,15 @@ impl PhaseLobeBlock {
 
 impl From<PhaseLobe> for PhaseLobeBlock {
     fn from(lobe: PhaseLobe) -> Self {
+        let (gap, slope, peak_nu) = lobe.from_peak();
         Self {
             scale_per_sr: lobe.scale_per_sr as f32,
             quadratic: lobe.quadratic as f32,
-            gap: lobe.gap as f32,
-            slope: lobe.slope as f32,
+            gap: gap as f32,
+            slope: slope as f32,
             exponent: lobe.exponent as f32,
-            padding: [0.0; 3],
+            peak_nu: peak_nu as f32,
+            padding: [0.0; 2],
         }
     }
 }

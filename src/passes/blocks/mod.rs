@@ -105,7 +105,7 @@ mod tests {
         );
         assert_eq!(size(&compose, "DirectionalLight"), size_of::<DirectionalLightBlock>());
         assert_layout!(compose, "SkyViewRange", SkyViewRangeBlock, [horizon_rad, sky_end_rad, sky_end_y, last_y]);
-        assert_layout!(compose, "PhaseLobe", PhaseLobeBlock, [scale_per_sr, quadratic, gap, slope, exponent]);
+        assert_layout!(compose, "PhaseLobe", PhaseLobeBlock, [scale_per_sr, quadratic, gap, slope, exponent, peak_nu]);
         assert_eq!(size(&compose, "PhaseLobe"), size_of::<PhaseLobeBlock>());
         assert_layout!(
             compose,
