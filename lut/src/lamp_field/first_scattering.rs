@@ -6,12 +6,13 @@ use super::legendre;
 use crate::PhaseFunction;
 
 /// Angles at which integrals are taken.
-const ANGLES: usize = 2048;
+const ANGLES: usize = 4096;
 
 /// A_l = 2π ∫ P(Θ) ∫₀^Θ P_l(cos θ) dθ dΘ of the degrees below `count`; A_1 is 1 for all phase functions.
 pub fn moments(phase: &PhaseFunction, count: usize) -> Vec<f64> {
-    // Angles crowd where phase functions peak.
-    let angle = |i: usize| PI * (i as f64 / ANGLES as f64).powi(3);
+    // Angles crowd where phase functions peak, forward and backward.
+    let from_end = |i: usize| 0.5 * PI * (2.0 * i as f64 / ANGLES as f64).powi(3);
+    let angle = |i: usize| if i <= ANGLES / 2 { from_end(i) } else { PI - from_end(ANGLES - i) };
     let mut within = vec![0.0; count];
     let mut sums = vec![0.0; count];
     let mut whole = 0.0;

@@ -24,9 +24,15 @@ pub struct Problem<'a> {
     pub radius: f64,
 }
 
-/// f_l of light that keeps close to its line.
+/// f_l of light that keeps close to its line: no moment falls more slowly than that of light which is not turned at all, as matter that
+/// throws light back would have it (A_l grows without bound as all that comes back meets again at the light).
 pub fn nearly_straight(albedo: f64, first: f64, depth: f64) -> f64 {
-    ((albedo * first - 1.0) * depth).exp() - (-depth).exp()
+    ((albedo * first.min(1.0) - 1.0) * depth).exp() - (-depth).exp()
+}
+
+/// f_l beside the light. It grows as W A_l τ up to what has come back: W/2 where everything is thrown back, ∫ W e^(-2 τ) dτ.
+fn beside_light(albedo: f64, first: f64, depth: f64) -> f64 {
+    (albedo * first * depth).min(0.5 * albedo) * (-depth).exp()
 }
 
 /// Number of an even moment at a node.
@@ -61,7 +67,7 @@ impl Problem<'_> {
                 match node {
                     0 => {
                         equations.add(row, row, 1.0);
-                        equations.add_right(row, nearly_straight(self.albedo, self.first[degree], depth(0.0)));
+                        equations.add_right(row, beside_light(self.albedo, self.first[degree], depth(0.0)));
                     }
                     NODES => self.let_out(&mut equations, degree),
                     _ => self.balance(
@@ -88,7 +94,7 @@ impl Problem<'_> {
         let values = equations.solve();
         let at = |node: usize, degree: usize| match degree % 2 {
             0 => values[even(node, degree)],
-            _ if node == 0 => nearly_straight(self.albedo, self.first[degree], depth(0.0)),
+            _ if node == 0 => beside_light(self.albedo, self.first[degree], depth(0.0)),
             _ if node == NODES => values[odd(NODES - 1, degree)],
             _ => 0.5 * (values[odd(node - 1, degree)] + values[odd(node, degree)]),
         };
