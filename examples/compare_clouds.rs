@@ -2,7 +2,7 @@
 //!
 //! For each `scenes/clouds/NAME.toml` of which there is a `DIR/NAME.exr`, made by `welkin reference` from that scene at any
 //! size, or several `DIR/NAME-SEED.exr` of one size and as many walks, of which the mean is taken:
-//! `cargo run --release --example compare_clouds -- DIR [--quality NAME]... [--form NAME]... [--scene NAME]...`
+//! `cargo run --release --example compare_clouds -- DIR [--of FOLDER] [--quality NAME]... [--form NAME]... [--scene NAME]...`
 //!
 //! Pixels count as cloudy where clouds hide more than half of what is behind them, and as thin from 0.03 to 0.3. Pixels that the
 //! horizon runs through count as neither: a picture covers them, the truth looks through their middle. With
@@ -40,6 +40,9 @@ struct Arguments {
     /// Means over so many pixels a side are compared, of pictures as of truths: they have less noise.
     #[arg(long, default_value_t = 1)]
     block: u32,
+    /// Folder of other scenes than `scenes/clouds/`.
+    #[arg(long)]
+    of: Option<PathBuf>,
     /// Shaders to take in place of the built-in ones.
     #[arg(long)]
     shaders: Option<PathBuf>,
@@ -81,8 +84,7 @@ impl Case {
     }
 }
 
-fn cases(directory: &Path) -> Vec<Case> {
-    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/clouds");
+fn cases(directory: &Path, scenes: &Path) -> Vec<Case> {
     let mut paths: Vec<PathBuf> = scenes.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     let case = |path: &PathBuf| {
@@ -235,7 +237,8 @@ fn print_row(case: &Case, side: u32, quality: Quality, scattering: CloudScatteri
 
 fn main() {
     let arguments = Arguments::parse();
-    let mut cases = cases(&arguments.directory);
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/clouds");
+    let mut cases = cases(&arguments.directory, arguments.of.as_ref().unwrap_or(&scenes));
     cases.retain(|case| arguments.scenes.is_empty() || arguments.scenes.contains(&case.name));
     let chosen = |form: &CloudScattering| arguments.forms.is_empty() || arguments.forms.contains(&format!("{form:?}"));
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));

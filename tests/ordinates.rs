@@ -47,7 +47,9 @@ fn solve(gpu: &Gpu, problem: &Problem, extinction: &[f32], sweeps: u32) -> Field
 
 fn relax(resources: &mut Resources, problem: &Problem, extinction: &[f32], start: Start, sweeps: u32) -> Field {
     let volumes = Volumes::prepare(problem, resources).unwrap();
-    resources.gpu.write_image(resources.existing_image("ordinates_extinction").unwrap(), extinction).unwrap();
+    for name in ["ordinates_extinction", "ordinates_passing"] {
+        resources.gpu.write_image(resources.existing_image(name).unwrap(), extinction).unwrap();
+    }
     let mut commands = resources.gpu.record("solve").unwrap();
     volumes.record_depth(resources, &mut commands).unwrap();
     volumes.record_source(resources, &mut commands).unwrap();
@@ -168,6 +170,24 @@ fn without_absorption_all_the_light_that_is_scattered_leaves() {
             let absorbing = solve(gpu, &Problem { albedo: 0.99, ..conservative }, &lumps(size, 0.02), 80);
             assert!(ratio(&absorbing) < 0.99, "one per cent of each scattering must be missed: {}", ratio(&absorbing));
         }
+    });
+}
+
+#[test]
+fn lumps_smaller_than_cells_let_light_pass_and_keep_none() {
+    with_gpu(|gpu| {
+        let size = [5, 4, 6];
+        let coarse = problem(vec![level(size)]);
+        let problem = Problem { grid: Grid { refinement: 2, ..coarse.grid.clone() }, ..coarse };
+        let extinction = |field: &Field| field.source.iter().map(|texel| f64::from(texel[0])).sum::<f64>() / 120.0;
+        let lumpy = lumps(size.map(|n| 2 * n), 0.05);
+        let mean = lumpy.iter().map(|&c| f64::from(c)).sum::<f64>() / lumpy.len() as f64;
+        let field = solve(gpu, &problem, &lumpy, 80);
+        assert!(extinction(&field) < 0.95 * mean, "{} of {mean} /m", extinction(&field));
+        let ratio = field.outflow()[0] / field.scattered_power();
+        assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+        let even = solve(gpu, &problem, &vec![mean as f32; lumpy.len()], 1);
+        assert!((extinction(&even) / mean - 1.0).abs() < 1e-5, "without lumps there is nothing between them");
     });
 }
 

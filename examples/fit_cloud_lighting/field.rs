@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::{DVec3, UVec3};
 use welkin::gpu::{DeviceRequest, Gpu};
-use welkin::passes::ordinates::coefficients::{forward_share, reduced_cosine};
+use welkin::passes::ordinates::coefficients::{falloff, forward_share, reduced_cosine};
 use welkin::passes::ordinates::{Directions, Grid, Level, Problem, Sides, Start, Volumes};
 use welkin::passes::{Resources, ShaderSources};
 use welkin::reference::{DensityField, GridField};
@@ -41,6 +41,8 @@ pub struct LightField {
     moments: Vec<[[f64; 4]; 3]>,
     /// Extinction of each fine texel.
     extinction: Vec<f64>,
+    /// Depth of each fine texel to the sun.
+    depth: Vec<f64>,
     /// f and g'.
     pub forward_share: f64,
     reduced_cosine: f64,
@@ -79,7 +81,7 @@ impl Solver {
             reduced_cosine: reduced_cosine(phase),
             ground_albedo: 0.0,
         };
-        let extinction = means(cloud, size * REFINEMENT, cell_m / f64::from(REFINEMENT), 1.0 - forward_share(phase));
+        let extinction = texels(cloud, size * REFINEMENT, cell_m / f64::from(REFINEMENT), 1.0 - forward_share(phase));
         self.relax(&problem, &extinction, phase, SWEEPS)
     }
 
@@ -103,21 +105,24 @@ impl Solver {
             reduced_cosine: reduced_cosine(phase),
             ground_albedo: 0.0,
         };
-        let extinction = vec![(depth * (1.0 - forward_share(phase))) as f32; 8 * rows as usize];
+        let extinction = vec![[(depth * (1.0 - forward_share(phase))) as f32; 2]; 8 * rows as usize];
         self.relax(&problem, &extinction, phase, SWEEPS_PER_ROW * rows)
     }
 
     fn relax(
         &mut self,
         problem: &Problem,
-        extinction: &[f32],
+        extinction: &[[f32; 2]],
         phase: &PhaseFunction,
         sweeps: u32,
     ) -> Result<LightField, Box<dyn Error>> {
         let resources = &mut self.0;
         let volumes = Volumes::prepare(problem, resources)?;
-        let image = resources.existing_image("ordinates_extinction").ok_or("prepared")?.clone();
-        resources.gpu.write_image(&image, extinction)?;
+        for (i, name) in ["ordinates_extinction", "ordinates_passing"].into_iter().enumerate() {
+            let image = resources.existing_image(name).ok_or("prepared")?.clone();
+            let texels: Vec<f32> = extinction.iter().map(|texel| texel[i]).collect();
+            resources.gpu.write_image(&image, &texels)?;
+        }
         let mut commands = resources.gpu.record("solve")?;
         volumes.record_depth(resources, &mut commands)?;
         volumes.record_source(resources, &mut commands)?;
@@ -127,21 +132,24 @@ impl Solver {
         let image = |name| resources.existing_image(name).ok_or("solved");
         let read = |name| -> Result<Vec<[u16; 4]>, Box<dyn Error>> { Ok(resources.gpu.read_image(image(name)?)?) };
         let (sun, sky, beam) = (read("ordinates_sunlight")?, read("ordinates_skylight")?, read("ordinates_beam")?);
+        let depth: Vec<f32> = resources.gpu.read_image(image("ordinates_depth")?)?;
         let wide = |texel: &[u16; 4]| texel.map(|bits| f64::from(half::f16::from_bits(bits)));
         let level = problem.grid.levels[0];
         Ok(LightField {
             size: level.size,
             cell_m: level.cell_m,
             moments: sun.iter().zip(&sky).zip(&beam).map(|((a, b), c)| [wide(a), wide(b), wide(c)]).collect(),
-            extinction: extinction.iter().map(|&e| f64::from(e)).collect(),
+            extinction: extinction.iter().map(|texel| f64::from(texel[0])).collect(),
+            depth: depth.into_iter().map(f64::from).collect(),
             forward_share: forward_share(phase),
             reduced_cosine: reduced_cosine(phase),
         })
     }
 }
 
-/// Mean extinction of texels times a share, from eight points in each.
-fn means(cloud: &GridField, size: UVec3, texel_m: DVec3, share: f64) -> Vec<f32> {
+/// Extinction of texels times a share, from eight points in each: the mean, and that with which they let light through, as
+/// `ordinates_extinction.wgsl` has it.
+fn texels(cloud: &GridField, size: UVec3, texel_m: DVec3, share: f64) -> Vec<[f32; 2]> {
     let mut texels = Vec::with_capacity(size.element_product() as usize);
     for z in 0..size.z {
         for y in 0..size.y {
@@ -150,11 +158,22 @@ fn means(cloud: &GridField, size: UVec3, texel_m: DVec3, share: f64) -> Vec<f32>
                 let at = |i: u32| {
                     corner + DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 0.5 + 0.25
                 };
-                texels.push(((0..8).map(|i| cloud.density(at(i) * texel_m)).sum::<f64>() / 8.0 * share) as f32);
+                let points: [f64; 8] = std::array::from_fn(|i| share * cloud.density(at(i as u32) * texel_m));
+                texels.push([points.iter().sum::<f64>() / 8.0, passing(&points, texel_m)].map(|c| c as f32));
             }
         }
     }
     texels
+}
+
+/// -ln ⟨e^-depth⟩ / length over the lines of two points, the mean of the three axes.
+fn passing(points: &[f64; 8], texel_m: DVec3) -> f64 {
+    let along = |axis: usize| {
+        let firsts = (0..8).filter(|i| i >> axis & 1 == 0);
+        let depths = firsts.map(|i| 0.5 * texel_m[axis] * (points[i] + points[i | 1 << axis]));
+        -(depths.map(|depth| (-depth).exp()).sum::<f64>() / 4.0).max(1e-300).ln() / texel_m[axis]
+    };
+    (0..3).map(along).sum::<f64>() / 3.0
 }
 
 impl LightField {
@@ -174,7 +193,9 @@ impl LightField {
         let [x, y, z, mean] = falling;
         let taken = -3.0 * beam / (4.0 * PI) * light([-x, -y, -z, mean]);
         let weight = 100.0 * fine_extinction + 1e-3;
-        [((light(sun) + taken) / weight).max(0.0), (light(sky) / weight).max(0.0)]
+        let ([depth], a) = (interpolate(fine, at, |index| [self.depth[index]]), falloff(self.reduced_cosine));
+        let nearer = ((1.0 + a * depth) / (1.0 - a * beam.max(1e-30).ln())).clamp(0.25, 4.0);
+        [((nearer * light(sun) + taken) / weight).max(0.0), (light(sky) / weight).max(0.0)]
     }
 }
 

@@ -4,7 +4,7 @@
 //! cargo run --release --example fit_cloud_lighting -- fit 256      # the numbers, for several phase functions
 //! cargo run --release --example fit_cloud_lighting -- table 768    # every method on clouds fitted and not fitted
 //! cargo run --release --example fit_cloud_lighting -- slabs        # reflectance of homogeneous slabs
-//! cargo run --release --example fit_cloud_lighting -- cells 64     # what the size of the cells costs
+//! cargo run --release --example fit_cloud_lighting -- cells 64     # what the size of the cells costs; [SHADERS [METRES]...]
 //! ```
 //!
 //! The number is that of walks a pixel. Pictures of the path tracer are kept in `target/cloud-truth`, by content.
@@ -50,7 +50,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some("fit") => fit::run(walks),
         Some("table") => table::run(walks),
         Some("slabs") => slabs::run(),
-        Some("cells") => cells::run(&mut field::Solver::with_shaders(arguments.get(2))?, walks),
+        Some("cells") => {
+            let mut cells_m = arguments.iter().skip(3).map(|text| text.parse()).collect::<Result<Vec<f64>, _>>()?;
+            if cells_m.is_empty() {
+                cells_m = vec![40.0, 64.0, 128.0, 256.0];
+            }
+            cells::run(&mut field::Solver::with_shaders(arguments.get(2))?, walks, &cells_m)
+        }
         _ => Err("the first argument must be 'fit', 'table', 'slabs' or 'cells'".into()),
     }
 }

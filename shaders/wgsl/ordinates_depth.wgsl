@@ -17,7 +17,7 @@ const OPAQUE: f32 = 60.0;
 const MAX_STEPS: u32 = 2048u;
 
 @group(0) @binding(0) var<uniform> part: Part;
-@group(0) @binding(1) var ordinates_extinction: texture_3d<f32>;
+@group(0) @binding(1) var ordinates_passing: texture_3d<f32>;
 @group(0) @binding(2) var table_sampler: sampler;
 @group(0) @binding(3) var ordinates_depth_image: texture_storage_3d<r32float, write>;
 
@@ -34,7 +34,7 @@ fn exit_m(place_m: vec3<f32>, direction: vec3<f32>, level: u32) -> f32 {
 }
 
 fn depth_along(start_m: vec3<f32>, direction: vec3<f32>) -> f32 {
-    let texture_size = vec3<f32>(textureDimensions(ordinates_extinction));
+    let texture_size = vec3<f32>(textureDimensions(ordinates_passing));
     var place_m = start_m;
     var depth = 0.0;
     for (var i = 0u; i < MAX_STEPS && depth < OPAQUE; i++) {
@@ -47,7 +47,7 @@ fn depth_along(start_m: vec3<f32>, direction: vec3<f32>) -> f32 {
         let longest_m = 0.5 / dot(abs(direction), 1.0 / texel_m);
         let step_m = min(longest_m, exit_m(place_m, direction, at));
         let middle = coordinates(place_m + 0.5 * step_m * direction, at, texture_size, f32(REFINEMENT));
-        depth += step_m * textureSampleLevel(ordinates_extinction, table_sampler, middle, 0.0).x;
+        depth += step_m * textureSampleLevel(ordinates_passing, table_sampler, middle, 0.0).x;
         // A little more, so that rounding leaves no place on the boundary.
         place_m += (step_m + 1e-3 * longest_m) * direction;
     }

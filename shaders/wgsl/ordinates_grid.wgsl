@@ -40,8 +40,9 @@ struct Ordinates {
     reduced_cosine: f32,
     // Albedo of the ground, for light that comes back up.
     ground_albedo: f32,
-    padding_a: f32,
-    padding_b: f32,
+    // a of ordinates_light.wgsl.
+    falloff: f32,
+    padding: f32,
     levels: array<Level, LEVEL_COUNT>,
 }
 

@@ -10,6 +10,9 @@
 // Light of the sky behind the clouds that droplets scatter by small angles only is neither: where the background is a
 // smooth radiance L, add L (e^(-q tau) - e^(-tau)) to L e^(-tau).
 //
+// Cells are wide and clouds' lit sides are not: a view ray knows its own depth to the sun, d, and the texels theirs, D. Light
+// falls into clouds about as 1 / (1 + a d), so that it is (1 + a D) / (1 + a d) times the texels' where both are scattered.
+//
 // Legend and definitions: those of welkin::ordinates_grid.
 
 #import welkin::ordinates_grid::{coordinates, level_of, ordinates, weight_of, LEVEL_COUNT, REFINEMENT}
@@ -18,9 +21,13 @@
 @group(2) @binding(2) var ordinates_skylight: texture_3d<f32>;
 @group(2) @binding(3) var ordinates_beam: texture_3d<f32>;
 @group(2) @binding(4) var ordinates_extinction: texture_3d<f32>;
+@group(2) @binding(5) var ordinates_depth: texture_3d<f32>;
 
 // Share of a level's half width within which it counts alone; outside it gives way to the next.
 const INNER: f32 = 0.85;
+
+// The light differs from the texels' by no more than this factor.
+const MOST: f32 = 4.0;
 
 const FOUR_PI: f32 = 12.5663706143592;
 
@@ -31,7 +38,10 @@ fn scattered_from(level: u32, place_m: vec3<f32>, view: vec3<f32>, beam: f32, li
     let weight = weight_of(textureSampleLevel(ordinates_extinction, linear, at, 0.0).x);
     let falling = textureSampleLevel(ordinates_beam, linear, at, 0.0) / weight;
     let in_beam = 3.0 * beam * ordinates.albedo / FOUR_PI * vec4<f32>(falling.xyz, -falling.w);
-    let sun = textureSampleLevel(ordinates_sunlight, linear, at, 0.0) / weight + in_beam;
+    let depth = textureSampleLevel(ordinates_depth, linear, at, 0.0).x;
+    let own_depth = -log(max(beam, 1e-30));
+    let nearer = clamp((1.0 + ordinates.falloff * depth) / (1.0 + ordinates.falloff * own_depth), 1.0 / MOST, MOST);
+    let sun = nearer * textureSampleLevel(ordinates_sunlight, linear, at, 0.0) / weight + in_beam;
     let sky = textureSampleLevel(ordinates_skylight, linear, at, 0.0) / weight;
     let along = vec2<f32>(dot(view, sun.xyz), dot(view, sky.xyz));
     return max(vec2<f32>(sun.w, sky.w) - ordinates.reduced_cosine * along, vec2<f32>(0.0));

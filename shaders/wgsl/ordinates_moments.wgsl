@@ -3,7 +3,8 @@
 // One invocation a cell of one level. The light of a cell has a slope, as in the sweep. Inside an opaque cell the sun's
 // light changes as its beam does as well. With e the beam over 4 pi, n the direction in which it falls and s_n = s . n,
 // I1 - 3 e s_n n does not change and I0 + 3 e s_n^2 is linear: those are kept, and a view ray puts back what the beam is at
-// its place.
+// its place. There it also puts what lumps send to themselves, e (m / k - t / c): m the mean of the
+// texels' extinctions t and k the cell's, with which they let light through, and c a texel's mean.
 //
 // Definitions: those of welkin::ordinates_grid and welkin::ordinates_directions.
 
@@ -25,11 +26,12 @@ struct Part {
 @group(0) @binding(5) var ordinates_low_faces: texture_3d<f32>;
 @group(0) @binding(6) var ordinates_high_faces: texture_3d<f32>;
 @group(0) @binding(7) var ordinates_extinction: texture_3d<f32>;
+@group(0) @binding(9) var ordinates_passing: texture_3d<f32>;
 // Both times the texel's weight. xyz: I1 = 3 x mean of direction times radiance; w: I0, mean radiance. Light travels along
 // directions.
 @group(0) @binding(2) var ordinates_sunlight_image: texture_storage_3d<rgba16float, write>;
 @group(0) @binding(3) var ordinates_skylight_image: texture_storage_3d<rgba16float, write>;
-// Times the texel's weight: s_n n, s_n^2, as far as the cell takes light from the beam.
+// Times the texel's weight: s_n n, s_n^2, as far as the cell takes light from the beam; less a third of m / k - t / c.
 @group(0) @binding(8) var ordinates_beam_image: texture_storage_3d<rgba16float, write>;
 
 // What the beam does in a cell.
@@ -51,7 +53,7 @@ fn beam_in(cell: vec3<u32>, matter: vec4<f32>, cell_m: vec3<f32>) -> Beam {
     }
     let normal = rise * inverseSqrt(steepness);
     let cosine = dot(normal, ordinates.toward_sun);
-    let mean = 3.0 * matter.y / matter.x;
+    let mean = 3.0 * matter.y / (matter.x * matter.w);
     let middle = mean + dot(normal * normal, 0.5 * (low + high));
     return Beam(matter.z * cosine * vec4<f32>(normal, cosine), mean, middle);
 }
@@ -93,9 +95,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let inside = vec3<u32>(i, i / REFINEMENT, i / (REFINEMENT * REFINEMENT)) % REFINEMENT;
         let texel = cell * REFINEMENT + inside;
         let offset = (vec3<f32>(inside) + 0.5) / f32(REFINEMENT) - 0.5;
-        let weight = weight_of(textureLoad(ordinates_extinction, texel, 0).x);
+        let mean_per_m = textureLoad(ordinates_extinction, texel, 0).x;
+        let weight = weight_of(mean_per_m);
+        let lumps = max(matter.w - textureLoad(ordinates_passing, texel, 0).x / max(mean_per_m, 1e-20), 0.0);
         textureStore(ordinates_sunlight_image, texel, weight * at(sun, sun_rise, offset));
-        textureStore(ordinates_beam_image, texel, weight * beam.falling);
+        textureStore(ordinates_beam_image, texel, weight * (beam.falling - vec4<f32>(0.0, 0.0, 0.0, lumps / 3.0)));
         textureStore(ordinates_skylight_image, texel, weight * at(sky, sky_rise, offset));
     }
 }

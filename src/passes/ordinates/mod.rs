@@ -3,9 +3,10 @@
 //! Passes in a row, each for every level of a [`Grid`]:
 //!
 //! ```text
-//! ordinates_extinction -> ordinates_extinction   c' of fine texels: of the scene's clouds, or the caller fills it
+//! ordinates_extinction -> ordinates_extinction   mean c' of fine texels: of the scene's clouds, or the caller fills it
+//!                         ordinates_passing      c' with which they let light through, the same
 //! ordinates_depth      -> ordinates_depth        optical depth towards the sun
-//! ordinates_source     -> ordinates_source       mean c' and first scattered sunlight of cells
+//! ordinates_source     -> ordinates_source       c' and first scattered sunlight of cells
 //! ordinates_sweep      -> ordinates_radiance     radiance by direction and cell, relaxed in place
 //! ordinates_moments    -> ordinates_sunlight, ordinates_skylight   its mean and flux
 //! ```

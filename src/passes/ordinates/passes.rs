@@ -14,7 +14,7 @@ pub const EXTINCTION: Pass = Pass {
         name: "ordinates_extinction",
         need,
         reads: &["cloud_shape_volume", "cloud_erosion_volume", "cloud_weather_map", "cloud_curl_map"],
-        writes: &["ordinates_extinction"],
+        writes: &["ordinates_extinction", "ordinates_passing"],
         inputs: |facts| {
             let grid = problem(facts).map(|problem| problem.grid);
             Fingerprint::of(&(clouds::layers_inputs(facts), grid)).following(time(facts))
@@ -29,7 +29,7 @@ pub const LIGHT: Pass = Pass {
     declaration: Declaration {
         name: "ordinates_sweep",
         need,
-        reads: &["ordinates_extinction"],
+        reads: &["ordinates_extinction", "ordinates_passing"],
         writes: &[
             "ordinates_depth",
             "ordinates_source",
@@ -52,7 +52,7 @@ pub const LIGHT: Pass = Pass {
 };
 
 fn fine_bytes(grid: &super::Grid) -> u64 {
-    grid.fine_texture().map(u64::from).iter().product::<u64>() * ImageFormat::R32Float.texel_bytes()
+    grid.fine_texture().map(u64::from).iter().product::<u64>() * 2 * ImageFormat::R32Float.texel_bytes()
 }
 
 fn need(facts: &Facts) -> Need {

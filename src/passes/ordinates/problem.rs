@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use welkin_shaders::{Definition, Definitions};
 
+use super::coefficients::falloff;
 use super::grid::{Grid, Level, Sides};
 
 /// Directions in which light is followed.
@@ -50,7 +51,8 @@ pub(crate) struct OrdinatesHeader {
     pub(crate) albedo: f32,
     pub(crate) reduced_cosine: f32,
     pub(crate) ground_albedo: f32,
-    pub(crate) padding: [f32; 2],
+    pub(crate) falloff: f32,
+    pub(crate) padding: f32,
 }
 
 /// WGSL `Level`.
@@ -85,7 +87,8 @@ impl Problem {
             albedo: self.albedo as f32,
             reduced_cosine: self.reduced_cosine as f32,
             ground_albedo: self.ground_albedo as f32,
-            padding: [0.0; 2],
+            falloff: falloff(self.reduced_cosine) as f32,
+            padding: 0.0,
         };
         let (mut first_slice, mut first_cell) = (0, 0);
         let block = |level: &Level| {
@@ -133,6 +136,7 @@ mod tests {
         };
         assert_eq!(offset("Ordinates", "reduced_cosine"), offset_of!(OrdinatesHeader, reduced_cosine));
         assert_eq!(offset("Ordinates", "ground_albedo"), offset_of!(OrdinatesHeader, ground_albedo));
+        assert_eq!(offset("Ordinates", "falloff"), offset_of!(OrdinatesHeader, falloff));
         assert_eq!(offset("Ordinates", "levels"), size_of::<OrdinatesHeader>());
         assert_eq!(offset("Level", "first_slice"), offset_of!(LevelBlock, first_slice));
         assert_eq!(offset("Level", "cell_m"), offset_of!(LevelBlock, cell_m));

@@ -18,8 +18,9 @@ const CELL_IMAGES: [(&str, ImageFormat); 3] = [
     ("ordinates_low_faces", ImageFormat::Rgba16Float),
     ("ordinates_high_faces", ImageFormat::Rgba16Float),
 ];
-const FINE_IMAGES: [(&str, ImageFormat); 5] = [
+const FINE_IMAGES: [(&str, ImageFormat); 6] = [
     ("ordinates_extinction", ImageFormat::R32Float),
+    ("ordinates_passing", ImageFormat::R32Float),
     ("ordinates_depth", ImageFormat::R32Float),
     ("ordinates_sunlight", ImageFormat::Rgba16Float),
     ("ordinates_skylight", ImageFormat::Rgba16Float),
@@ -81,10 +82,16 @@ impl<'a> Volumes<'a> {
         resources: &mut Resources,
         commands: &mut Commands,
     ) -> Result<(), RenderError> {
-        self.each_level("ordinates_extinction", &[], self.problem.grid.refinement, resources, commands)
+        self.each_level(
+            "ordinates_extinction",
+            &["ordinates_passing"],
+            self.problem.grid.refinement,
+            resources,
+            commands,
+        )
     }
 
-    /// Optical depth towards the sun of the extinction that lies in `ordinates_extinction`.
+    /// Optical depth towards the sun of the extinction that lies in `ordinates_passing`.
     pub fn record_depth(&self, resources: &mut Resources, commands: &mut Commands) -> Result<(), RenderError> {
         self.each_level("ordinates_depth", &[], self.problem.grid.refinement, resources, commands)
     }
