@@ -67,7 +67,7 @@ fn without_skipping() -> ShaderSources {
 fn brute_force() -> ShaderSources {
     let text = include_str!("../shaders/wgsl/clouds.wgsl");
     let step = text.lines().find(|line| line.contains("let step_m = min(min(growth")).expect("the march has changed");
-    let text = text.replace(step, "        let step_m = min((boundary_m - entered_m) / 64.0, boundary_m - t_m);");
+    let text = text.replace(step, "let step_m = min((boundary_m - (*march).entered_m) / 64.0, boundary_m - t_m);");
     without_skipping().with("clouds.wgsl", Cow::Owned(text))
 }
 

@@ -57,7 +57,7 @@ fn asking(folder: Option<&Path>) -> ShaderSources {
         ShaderSources::from_directory(folder).unwrap_or_else(|error| panic!("{error}"))
     });
     let text = include_str!("../shaders/wgsl/clouds.wgsl");
-    let light = "    (*sum).radiance += through_air * from_clouds(step, (*ray).direction, phase);\n";
+    let light = "    (*sum).radiance += through_air(air, at_m) * from_clouds(step, (*ray).direction, phase);\n";
     let import = "#import welkin::cloud_source::{phases, PHASE_COUNT}";
     assert!(text.contains(light) && text.contains(import), "the march has changed");
     let text = text.replace(import, "#import welkin::cloud_source::{depth_to_light, phases, Sample, PHASE_COUNT}");

@@ -147,7 +147,8 @@ fn add_light(
     let up = normalize(vec3<f32>(p.xy, p.z + atmosphere.radius_m));
     let within = (*march).extinction * (*march).step_m;
     let map = to_map(atmosphere.radius_m, p);
-    let step = CloudStep(map, altitude_m(ray, at_m), up, (*march).extinction, (*sum).clouds, within);
+    let altitude = altitude_m(ray, at_m);
+    let step = CloudStep(map, altitude, up, (*march).extinction, (*sum).clouds, within);
     (*sum).radiance += through_air(air, at_m) * from_clouds(step, (*ray).direction, phase);
     (*sum).weighted_m += at_m * (exp(-(*sum).clouds) - exp(-(*sum).clouds - within));
     (*sum).clouds += within;
