@@ -98,16 +98,17 @@ fn matter_that_absorbs_nothing_lets_all_light_out() {
 }
 
 #[test]
-fn matter_that_throws_light_back_keeps_no_more_of_it_than_there_is() {
+fn the_field_of_matter_that_throws_light_back_is_finite_and_of_the_size_of_the_lamps() {
     for g in [-0.5, -0.9, -0.99, -0.9999] {
         let phase = PhaseFunction::HenyeyGreenstein { g };
         for (albedo, radius) in [(0.9, 0.5), (0.9, 5.0), (1.0, 60.0)] {
             let field = LampField::new(&phase, albedo, radius);
             for depth in [0.02, 0.5, 3.0, 20.0, 60.0] {
                 let flux = field.flux(depth);
-                // No more can leave than the lamp sends. What is thrown back meets again at the lamp, more narrowly than moments tell: up to a
-                // sixth too much was seen, at g = -0.9.
-                assert!(flux.outward.abs() < 1.25, "g = {g}, {radius} at {depth}: {flux:?}");
+                // No more can leave than the lamp sends, and the solver is 2 % off walks. It is no solution for g below -0.5: what is
+                // thrown back meets again at the lamp, more narrowly than moments tell. There only the size is held.
+                let most = if g < -0.5 { 1.25 } else { 1.02 };
+                assert!(flux.outward.abs() < most, "g = {g}, {radius} at {depth}: {flux:?}");
                 assert!(
                     flux.scalar > 0.0 && flux.scalar < 3.0 * radius * (1.0 + radius),
                     "g = {g} at {depth}: {flux:?}"
