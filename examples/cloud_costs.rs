@@ -57,7 +57,7 @@ const MANY_STEPS: u32 = 1 << 14;
 /// Shaders that skip no empty space.
 fn without_skipping() -> ShaderSources {
     let text = include_str!("../shaders/wgsl/cloud_skip.wgsl");
-    let head = "altitude_m: f32) -> f32 {\n";
+    let head = "rise: f32) -> f32 {\n";
     assert!(text.contains(head), "the skipping of empty space has changed");
     let text = text.replace(head, &format!("{head}    if true {{ return 0.0; }}\n"));
     ShaderSources::embedded().with("cloud_skip.wgsl", Cow::Owned(text))

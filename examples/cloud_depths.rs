@@ -64,13 +64,13 @@ fn asking(folder: Option<&Path>) -> ShaderSources {
     let asked = "    // An exponential variate: where a photon that came from here was scattered last.
     let scattered_at = -log(1.0 - place_in_step((*ray).pixel.yx + 4096u, 0.5));
     if step.before <= scattered_at && scattered_at < step.before + step.within {
-        let height = (altitude - cloud_layers[0].base_m) / cloud_layers[0].thickness_m;
-        let sample = Sample(0u, map, height, altitude, up, step.before, step.within);
+        let height = (step.altitude_m - cloud_layers[0].base_m) / cloud_layers[0].thickness_m;
+        let sample = Sample(0u, step.map, height, step.altitude_m, up, step.before, step.within);
         (*sum).radiance = vec3<f32>(depth_to_light(sample, 0u), at_m, 1.0);
     }
 ";
     let text = text.replace(light, asked);
-    let text = text.replace("{to_map, CLOUD_LAYER_COUNT}", "{cloud_layers, to_map, CLOUD_LAYER_COUNT}");
+    let text = text.replace("{to_map, CLOUD_LAYER_SLOTS}", "{cloud_layers, to_map, CLOUD_LAYER_SLOTS}");
     all.with("clouds.wgsl", Cow::Owned(text))
 }
 

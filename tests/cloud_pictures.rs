@@ -71,7 +71,7 @@ fn wind_moves_clouds_without_making_their_noise_anew_and_a_turned_camera_keeps_t
     turned.camera.direction.azimuth_rad += 0.1;
     let frames = render(&[still, moved, turned], settings());
     let decision = |frame: usize, name: &str| frames[frame].timings.plan.decision(name).unwrap();
-    for noise in ["cloud_shape", "cloud_erosion", "cloud_weather", "cloud_bounds"] {
+    for noise in ["cloud_shape", "cloud_erosion", "cloud_weather", "cloud_gaps"] {
         assert_eq!(decision(1, noise), Decision::Reuse);
     }
     assert_eq!((decision(1, "cloud_density"), decision(1, "cloud_light")), (Decision::Run, Decision::Run));

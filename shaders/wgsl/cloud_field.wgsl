@@ -168,16 +168,21 @@ fn layer_body(layer: u32, map: vec2<f32>, altitude_m: f32) -> f32 {
     return body;
 }
 
-// Density of a layer relative to its extinction, in [0, 1].
-fn layer_density(layer: u32, map: vec2<f32>, altitude_m: f32) -> f32 {
-    let body = layer_body(layer, map, altitude_m);
-    if body <= 0.0 {
-        return 0.0;
-    }
+// What erosion leaves of a body above 0, as a density relative to the layer's extinction, in [0, 1].
+fn eroded(layer: u32, map: vec2<f32>, altitude_m: f32, body: f32) -> f32 {
     let up_m = altitude_m - cloud_layers[layer].base_m;
     let height = up_m / cloud_layers[layer].thickness_m;
     let place = vec3<f32>(along_and_across(layer, map), up_m);
     let eaten = cloud_layers[layer].erosion * erosion_at(layer, place, height);
     let density = saturate(cloud_layers[layer].edge * max((body - eaten) / (1.0 - eaten), 0.0));
     return density * mix(cloud_layers[layer].water_at_base, 1.0, height);
+}
+
+// Density of a layer relative to its extinction, in [0, 1].
+fn layer_density(layer: u32, map: vec2<f32>, altitude_m: f32) -> f32 {
+    let body = layer_body(layer, map, altitude_m);
+    if body <= 0.0 {
+        return 0.0;
+    }
+    return eroded(layer, map, altitude_m, body);
 }

@@ -9,7 +9,8 @@
 //   sample    a pixel that was marched: one of each block of CLOUD_BLOCK x CLOUD_BLOCK
 //   place     of a pixel or between pixels, from the picture's top left corner
 //
-// Definitions: CLOUD_BLOCK; CAPTURE (distances are asked for).
+// Definitions: CLOUD_BLOCK; CAPTURE (distances are asked for); WHOLE_BLOCKS (an invocation follows all pixels around a sample and not
+// one of their columns: what the samples around have in common is read once, for devices of few invocations).
 
 #import welkin::camera::{camera, view_direction}
 #import welkin::cloud_field::{cloud_layers, CLOUD_LAYER_COUNT}
@@ -31,6 +32,14 @@
 #endif
 
 const BLOCK: i32 = #{CLOUD_BLOCK};
+#ifdef WHOLE_BLOCKS
+const COLUMNS: i32 = BLOCK;
+// Blocks side by side, as in interpolate.wgsl.
+const GROUP_SIZE = vec2<u32>(32u, 1u);
+#else
+const COLUMNS: i32 = 1;
+const GROUP_SIZE = vec2<u32>(32u, 2u);
+#endif
 // Share of a new sample in a pixel that was marched; the rest is what was there, which evens out the samples' noise.
 const NEW_SHARE: f32 = 0.7;
 // Where there is no cloud, the point that is followed is as good as infinitely far, m.
@@ -134,27 +143,19 @@ fn place_before(view: vec3<f32>, distance_m: f32) -> vec2<f32> {
     return 0.5 * (vec2<f32>(x, -y) + 1.0) * camera.size;
 }
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if any(id.xy >= textureDimensions(cloud_radiance_image)) {
-        return;
-    }
-    let pixel = vec2<i32>(id.xy);
-    let from_first = vec2<f32>(pixel - vec2<i32>(cloud_frame.first_pixel)) / f32(BLOCK);
-    let nearest = vec2<i32>(floor(from_first + 0.5));
-    let bounds = around(nearest);
-    let place = place_before(view_direction(id.xy), bounds.distance_m);
-    let is_new = all(pixel == nearest * BLOCK + vec2<i32>(cloud_frame.first_pixel));
+// A pixel with the sample nearest to it, and what the samples around that one have in common.
+fn follow(pixel: vec2<i32>, nearest: vec2<i32>, bounds: ptr<function, Around>) {
+    let place = place_before(view_direction(vec2<u32>(pixel)), (*bounds).distance_m);
     let was_seen = all(place >= vec2<f32>(0.0)) && all(place <= camera.size);
     var texels: Texels;
     if was_seen {
         texels = interpolated_history(place);
         if cloud_frame.still == 0.0 {
-            texels.radiance = clamp(texels.radiance, bounds.least.radiance, bounds.most.radiance);
-            texels.air = clamp(texels.air, bounds.least.air, bounds.most.air);
-            texels.diffuse = clamp(texels.diffuse, bounds.least.diffuse, bounds.most.diffuse);
+            texels.radiance = clamp(texels.radiance, (*bounds).least.radiance, (*bounds).most.radiance);
+            texels.air = clamp(texels.air, (*bounds).least.air, (*bounds).most.air);
+            texels.diffuse = clamp(texels.diffuse, (*bounds).least.diffuse, (*bounds).most.diffuse);
         }
-        if is_new {
+        if all(pixel == nearest * BLOCK + vec2<i32>(cloud_frame.first_pixel)) {
             texels = mixed(texels, sample_at(nearest), NEW_SHARE);
         }
     } else {
@@ -167,4 +168,23 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let last = vec2<i32>(textureDimensions(cloud_distance_samples)) - 1;
     textureStore(cloud_distance_image, pixel, textureLoad(cloud_distance_samples, clamp(nearest, vec2<i32>(0), last), 0));
 #endif
+}
+
+@compute @workgroup_size(GROUP_SIZE.x, GROUP_SIZE.y)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    // Half a block to every side of a sample; the first of them may lie beside the picture.
+    let size = vec2<i32>(textureDimensions(cloud_radiance_image));
+    let first = vec2<i32>(id.xy) * vec2<i32>(COLUMNS, BLOCK) + vec2<i32>(cloud_frame.first_pixel) - BLOCK - BLOCK / 2;
+    if any(first >= size) {
+        return;
+    }
+    let middle = first + vec2<i32>(COLUMNS, BLOCK) / 2 - vec2<i32>(cloud_frame.first_pixel);
+    let nearest = vec2<i32>(floor(vec2<f32>(middle) / f32(BLOCK) + 0.5));
+    var bounds = around(nearest);
+    let end = min(first + vec2<i32>(COLUMNS, BLOCK), size);
+    for (var y = max(first.y, 0); y < end.y; y++) {
+        for (var x = max(first.x, 0); x < end.x; x++) {
+            follow(vec2<i32>(x, y), nearest, &bounds);
+        }
+    }
 }

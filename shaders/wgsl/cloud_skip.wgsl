@@ -1,39 +1,33 @@
 #define_import_path welkin::cloud_skip
-// How far from a point a layer of clouds is certainly empty: welkin_lut::cloud::CloudBounds on the device.
+// How far from a point a layer of clouds is certainly empty.
+//
+// Legend: that of cloud_gaps.wgsl, the pass that measures gaps.
 
-#import welkin::cloud_field::{along_and_across, cloud_layers, column_of}
+#import welkin::cloud_field::{along_and_across, cloud_layers}
 
-@group(1) @binding(5) var cloud_shape_bounds: texture_3d<f32>;
-@group(1) @binding(6) var cloud_weather_bounds: texture_2d<f32>;
+// Layer by layer.
+@group(1) @binding(5) var cloud_gaps: texture_3d<f32>;
 
-const SHAPE_BLOCKS: f32 = 16.0;
-const WEATHER_BLOCKS: f32 = 64.0;
-// What a step may use of a block's length: rounding, and the map's stretching of lengths.
+const GAP_CELLS: i32 = 256;
+const GAP_FLOORS: f32 = 4.0;
+// Cells at which a distance ends, and steps that a byte holds of each.
+const FARTHEST_GAP: i32 = 64;
+const GAP_STEPS: f32 = 4.0;
+// What a step may use of a gap: rounding, and the map's stretching of lengths.
 const MARGIN: f32 = 0.85;
-// Height at which anvils begin.
-const ANVIL_FROM: f32 = 0.76;
 
-// A distance, m, in every direction within which a layer is empty; 0 where it need not be.
-fn empty_m(layer: u32, map: vec2<f32>, altitude_m: f32) -> f32 {
-    let uv = along_and_across(layer, map);
-    let weather_tiles = fract(uv * cloud_layers[layer].weather_per_m + cloud_layers[layer].weather_offset);
-    let column = column_of(layer, textureLoad(cloud_weather_bounds, vec2<u32>(weather_tiles * WEATHER_BLOCKS), 0));
-    let weather_m = MARGIN / (cloud_layers[layer].weather_per_m * WEATHER_BLOCKS);
-    if column.coverage + column.anvil <= 0.0 {
-        return weather_m;
-    }
-    let shape_per_m = cloud_layers[layer].shape_per_m;
-    let finest = max(max(shape_per_m.x, shape_per_m.y), shape_per_m.z) * SHAPE_BLOCKS;
-    let reach_m = min(MARGIN / finest, weather_m);
+// A distance along a ray, m, in which it meets nothing of a layer; 0 where it may at once. The ray climbs by `rise` per metre, or more
+// and more, as rays do that leave the ground behind.
+fn gap_m(layer: u32, map: vec2<f32>, altitude_m: f32, rise: f32) -> f32 {
+    let tiles = along_and_across(layer, map) * cloud_layers[layer].weather_per_m + cloud_layers[layer].weather_offset;
+    let cell = vec3<i32>(vec2<i32>(fract(tiles) * f32(GAP_CELLS)) & vec2<i32>(GAP_CELLS - 1), i32(layer));
+    let floor_m = cloud_layers[layer].thickness_m / GAP_FLOORS;
     let up_m = altitude_m - cloud_layers[layer].base_m;
-    let inside = (up_m - reach_m) <= column.reach * cloud_layers[layer].gradient.z * cloud_layers[layer].thickness_m;
-    let place = fract(vec3<f32>(uv, up_m) * shape_per_m + cloud_layers[layer].shape_offset);
-    let shape = textureLoad(cloud_shape_bounds, vec3<u32>(place * SHAPE_BLOCKS), 0).x;
-    var body = select(0.0, shape + column.coverage - 1.0, inside);
-#ifdef CLOUD_ANVIL
-    if up_m + reach_m >= ANVIL_FROM * cloud_layers[layer].thickness_m {
-        body = max(body, shape + column.anvil - 1.0);
-    }
-#endif
-    return select(0.0, reach_m, body <= 0.0);
+    // A ray that sinks looks one floor farther down, and no deeper.
+    let is_sinking = rise < 0.0;
+    let lowest = clamp(floor(up_m / floor_m) - select(0.0, 1.0, is_sinking), 0.0, GAP_FLOORS - 1.0);
+    let steps = 255.0 * textureLoad(cloud_gaps, cell, 0)[u32(lowest)];
+    let reach_m = MARGIN / (cloud_layers[layer].weather_per_m * f32(GAP_CELLS) * GAP_STEPS) * steps;
+    let down_m = (up_m - lowest * floor_m) / max(-rise, 1e-6);
+    return select(reach_m, min(reach_m, max(down_m, 0.0)), is_sinking && lowest > 0.0);
 }

@@ -1,7 +1,8 @@
 #define_import_path welkin::cloud_step
 // A march's step through clouds: all layers at a point.
 
-#import welkin::cloud_field::{cloud_layers, layer_body, layer_density, CLOUD_LAYER_COUNT}
+#import welkin::cloud_field::{cloud_layers, eroded, layer_body, layer_density, CLOUD_LAYER_COUNT, CLOUD_LAYER_SLOTS}
+#import welkin::cloud_skip::gap_m
 #import welkin::cloud_source::{step_radiance, Sample, PHASE_COUNT}
 
 fn is_inside(layer: u32, altitude: f32) -> bool {
@@ -21,13 +22,45 @@ fn layer_extinction(layer: u32, map: vec2<f32>, altitude: f32) -> f32 {
     return cloud_layers[layer].extinction_per_m * layer_density(layer, map, altitude);
 }
 
-// Whether there may be clouds: before erosion there are some.
-fn may_be_cloudy(map: vec2<f32>, altitude: f32) -> bool {
-    var may_be = false;
+// A distance along a ray from a point, m, in which it meets nothing of the layers that hold an altitude `within`: at a boundary the
+// point's own may be rounded to the wrong side.
+fn gap_of_layers_m(map: vec2<f32>, altitude: f32, rise: f32, within: f32) -> f32 {
+    var least_m = 1e30;
     for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
-        may_be = may_be || (is_inside(layer, altitude) && layer_body(layer, map, altitude) > 0.0);
+        if is_inside(layer, within) {
+            least_m = min(least_m, gap_m(layer, map, altitude, rise));
+        }
     }
-    return may_be;
+    return least_m;
+}
+
+// What there is of each layer at a point before erosion.
+fn bodies_at(map: vec2<f32>, altitude: f32) -> array<f32, CLOUD_LAYER_SLOTS> {
+    var bodies: array<f32, CLOUD_LAYER_SLOTS>;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        bodies[layer] = layer_body(layer, map, altitude);
+    }
+    return bodies;
+}
+
+fn is_any_above_zero(bodies: ptr<function, array<f32, CLOUD_LAYER_SLOTS>>) -> bool {
+    var is_any = false;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        is_any = is_any || (*bodies)[layer] > 0.0;
+    }
+    return is_any;
+}
+
+// What erosion leaves of them.
+fn extinction_of(bodies: ptr<function, array<f32, CLOUD_LAYER_SLOTS>>, map: vec2<f32>, altitude: f32) -> f32 {
+    var extinction = 0.0;
+    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
+        let body = (*bodies)[layer];
+        if body > 0.0 {
+            extinction += cloud_layers[layer].extinction_per_m * eroded(layer, map, altitude, body);
+        }
+    }
+    return extinction;
 }
 
 fn cloud_extinction(map: vec2<f32>, altitude: f32) -> f32 {

@@ -10,14 +10,15 @@
 // Definitions: CLOUD_DISTANCE (also write distances); CLOUD_BLOCK; CLOUD_MAX_STEPS; CLOUD_STEP_M, the shortest step; CLOUD_STEP_PERMILLE, a step's share of the distance.
 
 #import welkin::atmosphere::atmosphere
-#import welkin::cloud_field::{to_map, CLOUD_LAYER_COUNT}
+#import welkin::cloud_field::{to_map, CLOUD_LAYER_SLOTS}
 #import welkin::cloud_frame::cloud_frame
-#import welkin::cloud_skip::empty_m
 #import welkin::cloud_source::{phases, PHASE_COUNT}
-#import welkin::cloud_step::{cloud_extinction, from_clouds, is_in_clouds, is_inside, may_be_cloudy, CloudStep}
+#import welkin::cloud_step::{
+    bodies_at, extinction_of, from_clouds, gap_of_layers_m, is_any_above_zero, is_in_clouds, CloudStep,
+}
 #import welkin::media_march::{
     altitude_m, clear_air, follow_air, growth_behind, leave_air, left_on_surface, next_crossing_m, pass_air, place_in_step,
-    position_m, ray_of, through_air, Air, Ray, NEVER_M, OPAQUE,
+    position_m, ray_of, rise_at, through_air, Air, Ray, NEVER_M, OPAQUE,
 }
 
 // Light of the clouds at the observer, and their transmittance.
@@ -37,8 +38,8 @@ const INFINITY_BITS: u32 = 0x7f800000u;
 const BLOCK: u32 = #{CLOUD_BLOCK}u;
 const MAX_STEPS: u32 = #{CLOUD_MAX_STEPS}u;
 const STEP_M: f32 = #{CLOUD_STEP_M}.0;
-// Steps between two looks for a longer way that is empty.
-const LOOKS: u32 = 8u;
+// Steps after which what lies beside is waited for.
+const LOOKS: u32 = 16u;
 const STEP_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
 
 struct Sum {
@@ -56,22 +57,13 @@ struct March {
     // The next crossing of a layer's base or top, and the last.
     boundary_m: f32,
     entered_m: f32,
-    // The step from t_m: its length and the extinction in it.
+    // The step from t_m: its length, the place that stands for it, and what is there before erosion and after.
     step_m: f32,
+    at_m: f32,
+    map: vec2<f32>,
+    altitude: f32,
+    bodies: array<f32, CLOUD_LAYER_SLOTS>,
     extinction: f32,
-    was_empty: bool,
-}
-
-// How far nothing need be looked at from a point, in the layers that hold another altitude: at a boundary the point's
-// own may be rounded to the wrong side.
-fn skip_m(map: vec2<f32>, altitude: f32, within: f32) -> f32 {
-    var least = NEVER_M;
-    for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
-        if is_inside(layer, within) {
-            least = min(least, empty_m(layer, map, altitude));
-        }
-    }
-    return least;
 }
 
 // Goes on to the next step with a cloud in it, behind an optical depth of clouds; returns whether there is one.
@@ -96,19 +88,12 @@ fn find_cloud(march: ptr<function, March>, ray: ptr<function, Ray>, offset: f32,
         if !is_in_clouds(middle) {
             (*march).t_m = boundary_m;
             (*march).steps += 1u;
-            (*march).was_empty = true;
             continue;
         }
-        if (*march).was_empty {
-            let map = to_map(atmosphere.radius_m, position_m(ray, t_m));
-            (*march).t_m += min(skip_m(map, altitude_m(ray, t_m), middle), boundary_m - t_m);
-        }
-        if look_ahead(march, ray, offset, growth) {
-            let at_m = (*march).t_m + offset * (*march).step_m;
-            let map = to_map(atmosphere.radius_m, position_m(ray, at_m));
-            (*march).extinction = cloud_extinction(map, altitude_m(ray, at_m));
-            (*march).was_empty = (*march).extinction <= 0.0;
-            if !(*march).was_empty {
+        if look_ahead(march, ray, offset, growth, middle) {
+            var bodies = (*march).bodies;
+            (*march).extinction = extinction_of(&bodies, (*march).map, (*march).altitude);
+            if (*march).extinction > 0.0 {
                 return true;
             }
             (*march).t_m += (*march).step_m;
@@ -117,8 +102,9 @@ fn find_cloud(march: ptr<function, March>, ray: ptr<function, Ray>, offset: f32,
     return false;
 }
 
-// Takes some steps through what is empty even before erosion; returns whether it stands before one that is not.
-fn look_ahead(march: ptr<function, March>, ray: ptr<function, Ray>, offset: f32, growth: f32) -> bool {
+// Takes some steps through what is empty even before erosion, leaping over gaps between columns; returns whether it stands before a step
+// that is not. The layers are those that hold the altitude `within`.
+fn look_ahead(march: ptr<function, March>, ray: ptr<function, Ray>, offset: f32, growth: f32, within: f32) -> bool {
     let boundary_m = (*march).boundary_m;
     // Seen from far above, a layer still takes a few steps.
     let longest_m = max(0.125 * (boundary_m - (*march).entered_m), STEP_M);
@@ -126,13 +112,22 @@ fn look_ahead(march: ptr<function, March>, ray: ptr<function, Ray>, offset: f32,
         let t_m = (*march).t_m;
         let step_m = min(min(growth * max(STEP_M, STEP_GROWTH * t_m), longest_m), boundary_m - t_m);
         let at_m = t_m + offset * step_m;
+        let map = to_map(atmosphere.radius_m, position_m(ray, at_m));
+        let altitude = altitude_m(ray, at_m);
         (*march).steps += 1u;
-        (*march).step_m = step_m;
-        if may_be_cloudy(to_map(atmosphere.radius_m, position_m(ray, at_m)), altitude_m(ray, at_m)) {
-            return true;
+        let empty_m = gap_of_layers_m(map, altitude, rise_at(ray, at_m, altitude), within);
+        if empty_m <= 0.0 {
+            var bodies = bodies_at(map, altitude);
+            if is_any_above_zero(&bodies) {
+                (*march).step_m = step_m;
+                (*march).at_m = at_m;
+                (*march).map = map;
+                (*march).altitude = altitude;
+                (*march).bodies = bodies;
+                return true;
+            }
         }
-        (*march).was_empty = true;
-        (*march).t_m += step_m;
+        (*march).t_m = min(max(t_m + step_m, at_m + empty_m), boundary_m);
     }
     return false;
 }
@@ -140,15 +135,13 @@ fn look_ahead(march: ptr<function, March>, ray: ptr<function, Ray>, offset: f32,
 // Adds the light of the step that a march is at.
 fn add_light(
     sum: ptr<function, Sum>, march: ptr<function, March>, ray: ptr<function, Ray>,
-    phase: ptr<function, array<f32, PHASE_COUNT>>, air: ptr<function, Air>, offset: f32
+    phase: ptr<function, array<f32, PHASE_COUNT>>, air: ptr<function, Air>
 ) {
-    let at_m = (*march).t_m + offset * (*march).step_m;
+    let at_m = (*march).at_m;
     let p = position_m(ray, at_m);
     let up = normalize(vec3<f32>(p.xy, p.z + atmosphere.radius_m));
     let within = (*march).extinction * (*march).step_m;
-    let map = to_map(atmosphere.radius_m, p);
-    let altitude = altitude_m(ray, at_m);
-    let step = CloudStep(map, altitude, up, (*march).extinction, (*sum).clouds, within);
+    let step = CloudStep((*march).map, (*march).altitude, up, (*march).extinction, (*sum).clouds, within);
     (*sum).radiance += through_air(air, at_m) * from_clouds(step, (*ray).direction, phase);
     (*sum).weighted_m += at_m * (exp(-(*sum).clouds) - exp(-(*sum).clouds - within));
     (*sum).clouds += within;
@@ -166,11 +159,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var sum: Sum;
     var air = clear_air();
     var march: March;
-    march.was_empty = true;
     march.boundary_m = next_crossing_m(&ray, 0.0);
     while sum.clouds < OPAQUE && find_cloud(&march, &ray, offset, sum.clouds) {
         pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), march.t_m);
-        add_light(&sum, &march, &ray, &phase, &air, offset);
+        add_light(&sum, &march, &ray, &phase, &air);
         march.t_m += march.step_m;
         pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), march.t_m);
     }

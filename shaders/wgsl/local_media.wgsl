@@ -17,7 +17,7 @@
 #import welkin::media_ground::{fog_share, ground_lit_by_lamps, volume_share}
 #import welkin::media_march::{
     altitude_m, clear_air, follow_air, growth_behind, leave_air, left_on_surface, observer_position, pass_air, place_in_step,
-    position_m, ray_of, through_air, Air, Ray, NEVER_M, OPAQUE,
+    position_m, ray_of, rise_at, through_air, Air, Ray, NEVER_M, OPAQUE,
 }
 #import welkin::volume_field::{fog_density, place_of, volumes, Place, FOG_COUNT, VOLUME_COUNT}
 #import welkin::volume_source::{from_lights, mean_through, seen, Piece, Stretch}
@@ -32,7 +32,7 @@
 #import welkin::cloud_field::CLOUD_LAYER_COUNT
 #import welkin::cloud_matter::cloud_matter
 #import welkin::cloud_source::{phases, PHASE_COUNT}
-#import welkin::cloud_step::{cloud_extinction, from_clouds, is_inside, layer_extinction, CloudStep}
+#import welkin::cloud_step::{cloud_extinction, from_clouds, gap_of_layers_m, is_inside, layer_extinction, CloudStep}
 #endif
 
 // Light of clouds, fog and volumes at the observer, and what they leave of the beam on the surface at the end.
@@ -161,6 +161,17 @@ fn next_step(ray: ptr<function, Ray>, t_m: f32, boundary_m: f32, here: Between, 
     return step;
 }
 
+#ifdef CLOUDS
+// A distance in which there is nothing where there is nothing but clouds, m.
+fn empty_ahead_m(ray: ptr<function, Ray>, t_m: f32, here: Between) -> f32 {
+    if !here.clouds_alone {
+        return 0.0;
+    }
+    let place = place_of(position_m(ray, t_m));
+    return gap_of_layers_m(place.map, place.altitude_m, rise_at(ray, t_m, place.altitude_m), here.middle_altitude_m);
+}
+#endif
+
 // The light that what the ray ends on receives: shares of the beam and of diffuse light in clear air.
 fn ground_share(place: Place, air: ptr<function, Air>) -> vec2<f32> {
     var share = left_on_surface(air, place.map, place.altitude_m);
@@ -201,6 +212,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         if min(before.r, min(before.g, before.b)) >= OPAQUE {
             break;
         }
+#ifdef CLOUDS
+        let empty_m = empty_ahead_m(&ray, t_m, here);
+        if empty_m > 0.0 {
+            t_m = min(t_m + empty_m, boundary_m);
+            pass_air(&air, &ray, exp(-before), t_m);
+            continue;
+        }
+#endif
         let step = next_step(&ray, t_m, boundary_m, here, growth_behind(greatest(before)), select(0.5, offset, here.uneven));
         let own = step.extinction * step.length_m;
         var within = own;

@@ -33,6 +33,9 @@ struct Between {
     // Longest step that its detail allows, m; NEVER_M where there is nothing.
     detail_m: f32,
     clouds: bool,
+    // Whether there is nothing else, and an altitude there.
+    clouds_alone: bool,
+    middle_altitude_m: f32,
     // Whether density changes within its detail: then every pixel looks at another place of a step.
     uneven: bool,
     // First word of its cluster.
@@ -42,7 +45,7 @@ struct Between {
 fn between(ray: ptr<function, Ray>, from_m: f32, to_m: f32) -> Between {
     let middle_m = 0.5 * (from_m + min(to_m, 1e8));
     let altitude = altitude_m(ray, middle_m);
-    var found = Between(NEVER_M, false, false, cluster_of((*ray).pixel, slice_of(middle_m)));
+    var found = Between(NEVER_M, false, false, altitude, false, cluster_of((*ray).pixel, slice_of(middle_m)));
     for (var i = 0u; i < FOG_COUNT; i++) {
         if altitude > volumes[i].bottom_m && altitude < volumes[i].top_m {
             // What counts is the change along the ray: of altitude, or of the billows.
@@ -62,6 +65,7 @@ fn between(ray: ptr<function, Ray>, from_m: f32, to_m: f32) -> Between {
     }
 #ifdef CLOUDS
     found.clouds = is_in_clouds(altitude);
+    found.clouds_alone = found.clouds && found.detail_m >= NEVER_M;
     if found.clouds {
         found.detail_m = min(found.detail_m, CLOUD_STEP_M);
         found.uneven = true;

@@ -63,6 +63,12 @@ fn altitude_m(ray: ptr<function, Ray>, t_m: f32) -> f32 {
     return geometry::altitude_along(atmosphere.radius_m, observer.altitude_m, (*ray).direction.z, t_m);
 }
 
+// How far a ray climbs per metre, at a distance and the altitude there.
+fn rise_at(ray: ptr<function, Ray>, t_m: f32, altitude: f32) -> f32 {
+    let r = atmosphere.radius_m + observer.altitude_m;
+    return (r * (*ray).direction.z + t_m) / (atmosphere.radius_m + altitude);
+}
+
 // Both distances to a shell, NEVER_M for those behind.
 fn shell_crossings_m(mu: f32, shell_m: f32) -> vec2<f32> {
     let both = geometry::shell_crossings_m(atmosphere.radius_m, observer.altitude_m, mu, shell_m);

@@ -1,7 +1,7 @@
 //! Clouds of every pixel, where a frame of a sequence marches only some.
 
 use super::{Pass, Recording, RenderError, clouds};
-use crate::gpu::{ImageFormat, Work};
+use crate::gpu::{DeviceKind, ImageFormat, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
 const NAME: &str = "cloud_reconstruction";
@@ -57,5 +57,13 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     if recording.facts.outputs.capture {
         recording.resources.image("cloud_distance_image", shape, ImageFormat::R32Float)?;
     }
-    recording.dispatch(NAME, &[], &[], Work::Invocations(shape.extent()))
+    // A processor reads what is around a sample once for all pixels nearest to it. A GPU wants more invocations than that, and
+    // neighbours that write side by side.
+    let block = recording.facts.cloud_block();
+    let whole_blocks = recording.resources.gpu.info().kind == DeviceKind::Cpu;
+    let (columns, flags): (_, &[&str]) = if whole_blocks { (block, &["WHOLE_BLOCKS"]) } else { (1, &[]) };
+    let [width, height, _] = shape.extent();
+    // Half a block lies beyond the outermost samples at each end, wherever in their blocks they are.
+    let [across, down] = [(width + 2 * block).div_ceil(columns), (height + 2 * block).div_ceil(block)];
+    recording.dispatch(NAME, flags, &[], Work::Invocations([across, down, 1]))
 }

@@ -6,10 +6,10 @@
 mod aerial_optical_depth;
 mod aerial_perspective;
 pub mod blocks;
-mod cloud_bounds;
 mod cloud_cover;
 mod cloud_density;
 mod cloud_erosion;
+mod cloud_gaps;
 mod cloud_light;
 mod cloud_reconstruction;
 mod cloud_shape;
@@ -91,7 +91,7 @@ pub const CLOUDS: [Pass; 11] = [
     cloud_shape::PASS,
     cloud_erosion::PASS,
     cloud_weather::PASS,
-    cloud_bounds::PASS,
+    cloud_gaps::PASS,
     cloud_density::PASS,
     cloud_light::PASS,
     cloud_cover::PASS,

@@ -84,7 +84,7 @@ impl CloudSettings {
             grid_slices: 12,
             grid_levels: 3,
             cell_m: 100,
-            block: 2,
+            block: 4,
         };
         match quality {
             Quality::Low => Self {
@@ -99,12 +99,11 @@ impl CloudSettings {
                 grid_size: 64,
                 grid_slices: 8,
                 cell_m: 150,
-                block: 4,
                 ..medium
             },
             Quality::Medium => medium,
             Quality::High => {
-                Self { sweeps: 32, step_m: 10, step_permille: 3, max_steps: 640, grid_slices: 16, ..medium }
+                Self { sweeps: 32, step_m: 10, step_permille: 3, max_steps: 640, grid_slices: 16, block: 2, ..medium }
             }
             Quality::Ultra => Self {
                 sweeps: 48,
