@@ -13,7 +13,8 @@
 //! - *brute force*: 64 steps through the layer, six looks at the field towards the light from each, eight octaves, every pixel
 //!   and nothing skipped, over a followed frame.
 //!
-//! With `--beside-brute-force` only followed frames and brute force. With a picture of the scene that the path tracer has made,
+//! With `--beside-brute-force` only followed frames and brute force, and brute force that looks towards the light where there is no cloud
+//! as well. With a picture of the scene that the path tracer has made,
 //! also how far both are from it: the root mean square of ln(ratio) over all pixels in green, of a frame that ends a turn of the
 //! camera. The truth's own noise is in both.
 
@@ -63,9 +64,22 @@ fn without_skipping() -> ShaderSources {
     ShaderSources::embedded().with("cloud_skip.wgsl", Cow::Owned(text))
 }
 
+/// Where brute force looks towards the light.
+#[derive(Clone, Copy, PartialEq)]
+enum Lit {
+    Clouds,
+    Everywhere,
+}
+
 /// Those that take 64 equal steps through a layer as well.
-fn brute_force() -> ShaderSources {
+fn brute_force(lit: Lit) -> ShaderSources {
     let text = include_str!("../shaders/wgsl/clouds.wgsl");
+    let [body, cloud] = ["if is_any_above_zero(&bodies) {", "if (*march).extinction > 0.0 {"];
+    assert!(text.contains(body) && text.contains(cloud), "the march has changed");
+    let text = match lit {
+        Lit::Clouds => text.to_owned(),
+        Lit::Everywhere => text.replace(body, "if true {").replace(cloud, "if true {"),
+    };
     let step = text.lines().find(|line| line.contains("let step_m = min(min(growth")).expect("the march has changed");
     let text = text.replace(step, "let step_m = min((boundary_m - (*march).entered_m) / 64.0, boundary_m - t_m);");
     without_skipping().with("clouds.wgsl", Cow::Owned(text))
@@ -162,20 +176,26 @@ fn turned(scene: &Scene, round: u32) -> Scene {
 /// Followed frames and brute force alone.
 fn beside_brute_force(arguments: &Arguments, scene: &Scene, qualities: &[Quality]) {
     println!(
-        "| quality | followed, ms | of that marched | brute force, ms | ratio | RMS of ln, followed | brute force |\n|---|---|---|---|---|---|---|"
+        "| quality | followed, ms | of that marched | brute force, ms | ratio | lit everywhere, ms | ratio | RMS of ln, followed | brute force |\n\
+         |---|---|---|---|---|---|---|---|---|"
     );
     for &quality in qualities {
         let whole = CloudSettings { max_steps: MANY_STEPS, ..CloudSettings::of(quality) };
         let brute = CloudSettings { scattering: CloudScattering::OctavesAsShipped, near_samples: 6, ..whole };
-        let mut ways =
-            [Way::new(quality, ShaderSources::embedded(), whole, true), Way::new(quality, brute_force(), brute, false)];
+        let mut ways = [
+            Way::new(quality, ShaderSources::embedded(), whole, true),
+            Way::new(quality, brute_force(Lit::Clouds), brute, false),
+            Way::new(quality, brute_force(Lit::Everywhere), brute, false),
+        ];
         let mut small = scene.clone();
         (small.camera.width, small.camera.height) = (64, 36);
         // Pipelines, noise and light, without the long wait for brute force at full size. Frames that follow have pipelines of
         // their own.
         ways[0].render(scene);
         ways[0].render(&turned(scene, 1));
-        ways[1].render(&small);
+        ways[1..].iter_mut().for_each(|way| {
+            way.render(&small);
+        });
         for round in 2..=arguments.rounds + 1 {
             let frame = turned(scene, round);
             for way in &mut ways {
@@ -184,17 +204,19 @@ fn beside_brute_force(arguments: &Arguments, scene: &Scene, qualities: &[Quality
                 way.marched.push(time(&rendered, |name| name == "clouds"));
             }
         }
-        let [followed, brute] = ways.each_ref().map(Way::median);
+        let [followed, brute, everywhere] = ways.each_ref().map(Way::median);
         let marched = median(&ways[0].marched);
         let errors = arguments.truth.as_ref().map(|path| {
             let truth = read_exr(path).unwrap_or_else(|error| panic!("{error}"));
-            ways.each_mut().map(|way| error_after_turn(way, scene, &truth))
+            let [followed, brute, _] = &mut ways;
+            [followed, brute].map(|way| error_after_turn(way, scene, &truth))
         });
         let [ours, theirs] =
             errors.map_or(["–".to_owned(), "–".to_owned()], |e| e.map(|error| format!("{error:.3}")));
         println!(
-            "| {quality} | {followed:.1} | {marched:.1} | {brute:.0} | {:.1} | {ours} | {theirs} |",
-            brute / followed
+            "| {quality} | {followed:.1} | {marched:.1} | {brute:.0} | {:.1} | {everywhere:.0} | {:.1} | {ours} | {theirs} |",
+            brute / followed,
+            everywhere / followed
         );
     }
 }
@@ -238,7 +260,7 @@ fn main() {
             Way::new(quality, embedded(), whole, true),
             Way::new(quality, without_skipping(), whole, false),
             Way::new(quality, embedded(), marched, false),
-            Way::new(quality, brute_force(), brute, false),
+            Way::new(quality, brute_force(Lit::Clouds), brute, false),
         ];
         let mut following = Way::new(quality, embedded(), whole, true);
         following.render(&scene);

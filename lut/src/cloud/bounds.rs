@@ -1,4 +1,4 @@
-//! Upper bounds of a layer's density over blocks of space, for empty-space skipping and for majorants.
+//! Upper bounds of a layer's density over blocks of space: majorants.
 //!
 //! The chain from noise to density grows with the shape and with the weather's values, and erosion only takes away. So
 //! the largest bytes of a block of texels bound the density, wherever wind has carried them: the bounds belong to the
@@ -10,9 +10,9 @@ use super::noise::{CloudNoise, SHAPE_SIZE, WEATHER_SIZE};
 /// Texels along a block's side.
 const BLOCK: usize = 8;
 /// Blocks along each side of the shape's volume.
-pub const SHAPE_BLOCKS: usize = SHAPE_SIZE / BLOCK;
+const SHAPE_BLOCKS: usize = SHAPE_SIZE / BLOCK;
 /// Blocks along each side of the weather map.
-pub const WEATHER_BLOCKS: usize = WEATHER_SIZE / BLOCK;
+const WEATHER_BLOCKS: usize = WEATHER_SIZE / BLOCK;
 /// What a step may use of a block's length: rounding, and lengths that the map stretches by up to a tenth.
 const MARGIN: f64 = 0.85;
 

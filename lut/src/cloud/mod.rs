@@ -14,7 +14,7 @@ mod parameters;
 mod plane;
 mod sampling;
 
-pub use bounds::{CloudBounds, SHAPE_BLOCKS, WEATHER_BLOCKS};
+pub use bounds::CloudBounds;
 pub use field::CloudField;
 pub use form::{CloudDefaults, CloudKind};
 pub use layer::CloudLayer;
