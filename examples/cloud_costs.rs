@@ -15,8 +15,8 @@
 //!
 //! With `--beside-brute-force` only followed frames and brute force, and brute force that looks towards the light where there is no cloud
 //! as well. With a picture of the scene that the path tracer has made,
-//! also how far both are from it: the root mean square of ln(ratio) over all pixels in green, of a frame that ends a turn of the
-//! camera. The truth's own noise is in both.
+//! of a width that divides the frames', also how far both are from it: the root mean square of ln(ratio) in green, over all its pixels, of
+//! the means over them of a frame that ends a turn of the camera. The truth's own noise is in both.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -144,27 +144,32 @@ fn of_light(name: &str) -> bool {
     name == "cloud_density" || name == "cloud_light" || name.starts_with("ordinates")
 }
 
-/// How far a frame is from the path tracer's.
+/// How far a frame's means over the pixels of the path tracer's picture are from that.
 fn rms_of_ln(found: &Frame, truth: &Frame) -> f64 {
     const GREEN: usize = 1;
-    let pixel = |i: usize| {
-        let ratio = found.radiance[i][GREEN].max(1e-9) / truth.radiance[i][GREEN].max(1e-9);
-        f64::from(ratio).ln().powi(2)
+    let block = found.width / truth.width;
+    let mean = |x: u32, y: u32| {
+        let pixels = (0..block * block).map(|i| (y * block + i / block) * found.width + x * block + i % block);
+        let sum: f32 = pixels.map(|i| found.radiance[i as usize][GREEN]).sum();
+        sum / (block * block) as f32
     };
-    let sum: f64 = (0..truth.radiance.len()).map(pixel).sum();
-    (sum / truth.radiance.len() as f64).sqrt()
+    let places = (0..truth.height).flat_map(|y| (0..truth.width).map(move |x| (x, y)));
+    let squares = places.zip(&truth.radiance).map(|((x, y), truth)| {
+        let ratio = mean(x, y).max(1e-9) / truth[GREEN].max(1e-9);
+        f64::from(ratio).ln().powi(2)
+    });
+    (squares.sum::<f64>() / truth.radiance.len() as f64).sqrt()
 }
 
 /// The error of the last of some frames in which the camera turns to where the truth was seen from.
 fn error_after_turn(way: &mut Way, scene: &Scene, truth: &Frame) -> f64 {
-    let mut last = None;
-    for before in (0..8).rev() {
+    let frames_before = if way.in_sequence { 8 } else { 0 };
+    for before in (1..=frames_before).rev() {
         let mut frame = scene.clone();
-        (frame.camera.width, frame.camera.height) = (truth.width, truth.height);
         frame.camera.direction.azimuth_rad -= 0.01 * f64::from(before);
-        last = Some(way.render(&frame).frame);
+        way.render(&frame);
     }
-    last.map_or(f64::NAN, |frame| rms_of_ln(&frame, truth))
+    rms_of_ln(&way.render(scene).frame, truth)
 }
 
 fn turned(scene: &Scene, round: u32) -> Scene {
