@@ -4,6 +4,7 @@ use std::fmt;
 
 use welkin::frame::Frame;
 use welkin::scene::Scene;
+use welkin_lut::spectrum::Channels;
 
 /// A value that breaks a law, with what it was made from.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,7 +13,7 @@ pub struct Broken {
     pub law: &'static str,
     /// Where, from the top left.
     pub pixel: [u32; 2],
-    /// The value in the three bands.
+    /// The value in the three bands or channels.
     pub value: [f64; 3],
     /// Where the pixel looks, degrees above the horizontal and clockwise from north.
     pub view_deg: [f64; 2],
@@ -48,25 +49,43 @@ pub fn inputs(scene: &Scene) -> String {
     )
 }
 
-/// What must hold for every number of a texel.
-type Law = (&'static str, fn(f32) -> bool);
+/// What must hold for every texel.
+type Law = (&'static str, fn([f32; 3]) -> bool);
+
+/// Of bands, each of which is light of its own.
+const OF_BANDS: [Law; 2] = [
+    ("radiance must not be negative", |v| v.iter().all(|v| v.is_nan() || *v >= 0.0)),
+    ("transmittance must lie in [0, 1]", |v| v.iter().all(|v| (0.0..=1.0).contains(v))),
+];
+
+/// Of colours, whose channels may leave these ranges where a colour lies beyond their gamut, as that of a sun on the horizon does. What
+/// spectra add up to without negative weights may not: luminance, and so one channel at least. Weights of white are rounded.
+const OF_COLOURS: [Law; 2] = [
+    ("some channel of radiance must not be negative", |v| v.iter().any(|v| v.is_nan() || *v >= 0.0)),
+    ("some channel of transmittance must be 0 or more, and some 1 or less", |v| {
+        v.iter().any(|v| *v >= 0.0) && v.iter().any(|v| *v <= 1.0 + 4.0 * f32::EPSILON)
+    }),
+];
 
 /// What a picture breaks, the first pixel of each law.
 pub fn broken(scene: &Scene, frame: &Frame) -> Vec<Broken> {
-    let radiance: [Law; 2] =
-        [("radiance must be finite", |v| v.is_finite()), ("radiance must not be negative", |v| v.is_nan() || v >= 0.0)];
-    let transmittance: [Law; 1] = [("transmittance must lie in [0, 1]", |v| (0.0..=1.0).contains(&v))];
-    let mut broken = first_broken(scene, &frame.radiance, &radiance);
-    broken.extend(first_broken(scene, &frame.transmittance, &transmittance));
+    let [radiance, transmittance] = match scene.spectrum.channels {
+        Channels::Bands => OF_BANDS,
+        Channels::Colour(_) => OF_COLOURS,
+    };
+    let finite: Law = ("radiance must be finite", |v| v.iter().all(|v| v.is_finite()));
+    let finite_transmittance: Law = ("transmittance must be finite", |v| v.iter().all(|v| v.is_finite()));
+    let mut broken = first_broken(scene, &frame.radiance, &[finite, radiance]);
+    broken.extend(first_broken(scene, &frame.transmittance, &[finite_transmittance, transmittance]));
     let distances: Vec<_> = frame.distance_m.iter().map(|&distance_m| [distance_m; 3]).collect();
-    broken.extend(first_broken(scene, &distances, &[("distance must not be negative", |v| v >= 0.0)]));
+    broken.extend(first_broken(scene, &distances, &[("distance must not be negative", |v| v[0] >= 0.0)]));
     broken
 }
 
 fn first_broken(scene: &Scene, texels: &[[f32; 3]], laws: &[Law]) -> Vec<Broken> {
     let width = scene.camera.width;
     let breaks = |&(law, holds): &Law| {
-        let at = texels.iter().position(|texel| !texel.iter().all(|&value| holds(value)))?;
+        let at = texels.iter().position(|&texel| !holds(texel))?;
         let pixel = [at as u32 % width, at as u32 / width];
         let (value, view_deg) = (texels[at].map(f64::from), view_deg(scene, pixel));
         Some(Broken { law, pixel, value, view_deg, inputs: inputs(scene) })
