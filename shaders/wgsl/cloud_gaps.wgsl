@@ -10,7 +10,7 @@
 //
 // Definitions: the stage, GAPS_IN_CELLS or GAPS_ALONG_ROWS, or else across them.
 
-#import welkin::cloud_field::{cloud_layers, column_of, cloud_weather_map, CLOUD_LAYER_COUNT}
+#import welkin::cloud_field::{cloud_layers, cloud_weather_map, column_of}
 #import welkin::cloud_skip::{FARTHEST_GAP, GAP_CELLS, GAP_FLOORS, GAP_STEPS}
 
 #ifndef GAPS_IN_CELLS
@@ -21,7 +21,7 @@
 #ifdef GAPS_IN_CELLS
 const WEATHER_TEXELS: i32 = 512;
 // Texels of the weather map along a cell.
-const CELL_TEXELS: i32 = WEATHER_TEXELS / i32(GAP_CELLS);
+const CELL_TEXELS: i32 = WEATHER_TEXELS / GAP_CELLS;
 
 // The most of each channel of the weather map that is interpolated anywhere in a cell.
 fn most_of(cell: vec2<i32>) -> vec4<f32> {
