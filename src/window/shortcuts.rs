@@ -63,6 +63,24 @@ impl Action {
         let is_function_key = matches!(code, KeyCode::F1 | KeyCode::F5 | KeyCode::F11 | KeyCode::F12);
         is_function_key || matches!(self, Self::Quit | Self::Save)
     }
+
+    /// Whether a key that is held asks for it again and again: steps do, and what would be undone by its repetition does
+    /// not.
+    pub fn is_a_step(self) -> bool {
+        matches!(
+            self,
+            Self::Undo
+                | Self::Redo
+                | Self::Slower
+                | Self::Faster
+                | Self::Earlier
+                | Self::Later
+                | Self::WipeLeft
+                | Self::WipeRight
+                | Self::Darker
+                | Self::Brighter
+        )
+    }
 }
 
 /// A key with what it does.

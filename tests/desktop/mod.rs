@@ -41,13 +41,22 @@ impl Desktop {
         Self { server, manager: None, display: format!(":{}", number.trim()), folder }
     }
 
-    /// The same with a window manager, which full screens and minimised windows need.
+    /// The same with a window manager, which full screens and minimised windows need: one that is at work, since a first
+    /// start, which reads all fonts, may take longer than a window does, and one that comes late takes the keys away.
     pub fn managed() -> Self {
         let mut desktop = Self::start();
         let mut command = Command::new("openbox");
         let manager = command.env("DISPLAY", &desktop.display).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
         desktop.manager = Some(manager.unwrap_or_else(|error| panic!("openbox: {error}; apt-get install openbox")));
+        until("a window manager", || desktop.is_managed().then_some(()));
         desktop
+    }
+
+    /// Whether a window manager answers.
+    fn is_managed(&self) -> bool {
+        let mut command = Command::new("xdotool");
+        command.env("DISPLAY", &self.display).arg("get_num_desktops").stdout(Stdio::null()).stderr(Stdio::null());
+        command.status().is_ok_and(|status| status.success())
     }
 
     /// What is to be seen at a place of the screen: red, green, blue.

@@ -66,7 +66,8 @@ impl Open {
         let typing = taken || self.interface.context().wants_keyboard_input();
         if let Some(action) = shortcuts::action(code, self.modifiers)
             && down
-            && (!typing || (action.is_never_typed(code) && !event.repeat))
+            && (!typing || action.is_never_typed(code))
+            && (!event.repeat || (!typing && action.is_a_step()))
         {
             self.session.asked.push(action);
             self.window.request_redraw();
