@@ -18,6 +18,7 @@
 // Definitions: AIR (there is any), LIT, MULTIPLE_SCATTERING, EMISSION; see welkin::sky.
 
 #import welkin::atmosphere::{atmosphere, phase_per_sr, SCATTERER_COUNT}
+#import welkin::attenuation::opacity
 #import welkin::geometry::shadow_interval_m
 #import welkin::mapping
 #import welkin::march::{view_ray, AirRay}
@@ -53,12 +54,6 @@ struct Reach {
     along_m: f32,
     // Whether the point lies where the ray leaves the air or meets the planet, or behind.
     at_end: bool,
-}
-
-// 1 - exp(-tau), without cancellation in thin air.
-fn opacity(tau: vec3<f32>) -> vec3<f32> {
-    let thin = tau * (1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau * (1.0 / 24.0 - tau / 120.0))));
-    return select(1.0 - exp(-tau), thin, tau < vec3<f32>(0.2));
 }
 
 // One opacity over another; of air that does nothing, the share of the way.

@@ -18,6 +18,7 @@
 #import welkin::atmosphere::{
     atmosphere, densities, exponential_density, extinction_at, layer_density, tent_density, PI, SCATTERER_COUNT
 }
+#import welkin::attenuation::mean_transmittance
 #import welkin::geometry::distance_to_shell_from_above
 #import welkin::mapping
 #import welkin::march::{altitude_at, AirRay}
@@ -150,12 +151,6 @@ fn piece_end_m(ray: AirRay, piece: u32) -> f32 {
         return upward_crossing_m(ray, emission.breakpoints_m[piece - BREAKPOINT_COUNT - 1u].x);
     }
     return ray.length_m;
-}
-
-// (1 - exp(-tau)) / tau.
-fn mean_transmittance(tau: vec3<f32>) -> vec3<f32> {
-    let thin = 1.0 - tau * (0.5 - tau / 6.0);
-    return select((1.0 - exp(-tau)) / max(tau, vec3<f32>(1e-3)), thin, tau < vec3<f32>(1e-2));
 }
 
 // Adds what a piece sends to the ray's start; tau becomes the optical depth from there to the piece's end.

@@ -8,6 +8,8 @@
 //   nu        cosine between the direction in which light leaves and that away from the lamp
 // What tables hold is over the lamp's intensity, over 1 - e^(-depth), and times the square of the distance.
 
+#import welkin::attenuation::opacity
+
 // Rows of depths, ever the same factor apart; columns of angles as sqrt(angle / π), then the net flux away from the lamp and the integral
 // over all directions.
 @group(1) @binding(48) var<storage, read> lamp_fields: array<vec4<f32>>;
@@ -24,10 +26,6 @@ const PI: f32 = 3.14159265;
 
 fn row_of(depth: f32) -> f32 {
     return clamp(log(max(depth, FIRST_DEPTH) / FIRST_DEPTH) / LOG_DEPTHS, 0.0, 1.0) * f32(DEPTHS - 1u);
-}
-
-fn opacity(depth: vec3<f32>) -> vec3<f32> {
-    return select(1.0 - exp(-depth), depth * (1.0 - 0.5 * depth), depth < vec3<f32>(0.01));
 }
 
 fn between_columns(first: u32, column: f32) -> vec3<f32> {

@@ -11,6 +11,9 @@
 // LAMP_FROXELS.
 
 #import welkin::atmosphere::{atmosphere, PI}
+#ifdef CLOUDS
+#import welkin::attenuation::mean_transmittance
+#endif
 #import welkin::cluster::{cluster_of, slice_of}
 #import welkin::cluster_members::{media_of, next_member, NONE}
 #import welkin::media_between::{between, next_boundary_m, Between}
@@ -20,7 +23,7 @@
     position_m, ray_of, rise_at, through_air, Air, Ray, NEVER_M, OPAQUE,
 }
 #import welkin::volume_field::{fog_density, place_of, volumes, Place, FOG_COUNT, VOLUME_COUNT}
-#import welkin::volume_source::{from_lights, mean_through, seen, Piece, Stretch}
+#import welkin::volume_source::{from_lights, seen, Piece, Stretch}
 #if LOCAL_LIGHT_COUNT > 0
 #import welkin::cluster_members::{lamps_of, near_lamps_of}
 #import welkin::lamp_source::{from_local_light, ALL, NEAR}
@@ -235,7 +238,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             let up = normalize(vec3<f32>(at.p.xy, at.p.z + atmosphere.radius_m));
             let clouds = CloudStep(at.map, at.altitude_m, up, cloudy, sum.clouds, cloudy * step.length_m);
             let light = from_clouds(clouds, ray.direction, &phase);
-            sum.radiance += air_leaves * exp(-sum.local) * mean_through(own) * light;
+            sum.radiance += air_leaves * exp(-sum.local) * mean_transmittance(own) * light;
 #if LOCAL_LIGHT_COUNT > 0
             sum.radiance += air_leaves * clouds_lit_by_lamps(at, cloudy, stretch, here.cluster);
 #endif

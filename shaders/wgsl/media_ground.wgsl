@@ -9,7 +9,7 @@
 #import welkin::observer::observer
 #import welkin::slab::{downward, Slab}
 #import welkin::tables::table_sampler
-#import welkin::volume_field::{local_length_m, volumes, Place, FOG_COUNT, VOLUME_COUNT}
+#import welkin::volume_field::{local_length_m, volumes, way_to_top_m, Place, FOG_COUNT, VOLUME_COUNT}
 #import welkin::volume_grid::{block_uvw, spot_of}
 #import welkin::volume_source::volume_sky_image
 #if LOCAL_LIGHT_COUNT > 0
@@ -30,21 +30,24 @@ fn fog_share(place: Place, above: vec2<f32>) -> f32 {
     let mu = observer.lights[0].direction.z;
     let beam = above.x * max(mu, 0.0) * light_in_air(0u, place.altitude_m, mu);
     let sky = above.y * PI * surroundings(place.altitude_m, mu, observer.lights[0].irradiance).above;
-    let slab = Slab(beam, max(mu, 0.02), sky, volumes[0].reduced_cosine, atmosphere.ground_albedo, depths.x + depths.z);
+    let fog = volumes[0];
+    let slab = Slab(
+        beam, max(mu, 0.02), sky, fog.reduced_cosine, atmosphere.ground_albedo, depths.x + depths.z, fog.similar_albedo
+    );
     return (downward(slab, depths.x) / max(beam + sky, vec3<f32>(1e-20))).g;
 }
 
 // Points on the way through an uneven volume.
 const SHADE_SAMPLES: u32 = 6u;
-const FARTHEST_M: f32 = 60000.0;
 
 // Share of the first light's beam that local volumes let through to a place, straight or nearly so.
 fn volume_share(place: Place) -> f32 {
     let toward = observer.lights[0].direction;
+    let air_m = way_to_top_m(place, toward);
     var depth = 0.0;
     for (var i = FOG_COUNT; i < VOLUME_COUNT; i++) {
         let forward = (1.0 - volumes[i].similarity) * volumes[i].scattering_per_m.g;
-        let length_m = local_length_m(i, place.p, toward, FARTHEST_M, SHADE_SAMPLES);
+        let length_m = local_length_m(i, place.p, toward, air_m, SHADE_SAMPLES);
         depth += (volumes[i].extinction_per_m.g - forward) * length_m;
     }
     return exp(-depth);

@@ -8,6 +8,7 @@
 // Definitions: CLOUDS; SURFACE; AIR; FOG_COUNT.
 
 #import welkin::atmosphere::{atmosphere, extinction_at}
+#import welkin::attenuation::opacity
 #import welkin::camera::view_direction
 #ifdef CLOUDS
 #import welkin::cloud_daylight::{clear_fluxes, cover_at, diffuse_share, left_on_ground, straight_left, ClearFluxes}
@@ -184,10 +185,10 @@ fn follow_air(air: ptr<function, Air>, ray: ptr<function, Ray>) {
     for (var i = 0u; i < count; i++) {
         let middle_m = (*air).at_m + (f32(i) + 0.5) * step_m;
         let altitude = altitude_m(ray, middle_m);
-        let before = exp(-(*air).depth);
         (*air).extinction_per_m = extinction_at(altitude);
-        (*air).depth += step_m * (*air).extinction_per_m;
-        let share = media * (before - exp(-(*air).depth));
+        let own = step_m * (*air).extinction_per_m;
+        let share = media * exp(-(*air).depth) * opacity(own);
+        (*air).depth += own;
 #ifdef CLOUDS
         let map = to_map(atmosphere.radius_m, position_m(ray, middle_m));
         (*air).beam += straight_left(0u, map, altitude) * share;
@@ -243,9 +244,9 @@ fn leave_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>)
     let altitude = clamp(altitude_m(ray, at_m), 0.0, atmosphere.top_m);
     let rise = (atmosphere.radius_m + observer.altitude_m) * (*ray).direction.z + at_m;
     let mu = max(rise / (atmosphere.radius_m + altitude), geometry::horizon_mu(atmosphere.radius_m, altitude));
-    let before = exp(-(*air).depth);
-    (*air).depth += optical_depth_to_top(altitude, mu);
-    let share = media * (before - exp(-(*air).depth));
+    let own = optical_depth_to_top(altitude, mu);
+    let share = media * exp(-(*air).depth) * opacity(own);
+    (*air).depth += own;
     let map = to_map(atmosphere.radius_m, position_m(ray, at_m));
     (*air).beam += straight_left(0u, map, altitude) * share;
     (*air).diffuse += diffuse_share(cover_at(map, altitude), (*air).clear) * share;

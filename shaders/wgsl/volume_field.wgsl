@@ -15,6 +15,7 @@
 
 #import welkin::atmosphere::atmosphere
 #import welkin::cloud_field::{cloud_erosion_volume, cloud_shape_volume, to_map, volume, EROSION_TEXELS, SHAPE_TEXELS}
+#import welkin::geometry::distance_to_shell_from_below
 
 const VOLUME_COUNT: u32 = #{VOLUME_COUNT}u;
 const FOG_COUNT: u32 = #{FOG_COUNT}u;
@@ -40,8 +41,13 @@ struct Volume {
     grid_size: vec3<u32>,
     // Where its samples begin.
     grid_first: u32,
-    // 1 - f, f the second Legendre moment of the phase function: the share of scattering that turns light from its line.
+    // Extinction of the similar medium over the extinction, 1 - w f with f the second Legendre moment of the phase function: all
+    // but the scattering that hardly turns light from its line.
+    similar_extinction: vec3<f32>,
+    // 1 - f, the share of scattering that turns light from its line.
     similarity: f32,
+    // Single-scattering albedo of the similar medium.
+    similar_albedo: vec3<f32>,
     // Mean cosine of that share.
     reduced_cosine: f32,
     // 1 - the whole mean cosine.
@@ -57,7 +63,6 @@ struct Volume {
     occluder_count: u32,
     // Its table of lamps' scattered light: welkin::lamp_field.
     lamp_field: u32,
-    padding: u32,
 }
 
 @group(1) @binding(40) var<storage, read> volumes: array<Volume>;
@@ -222,6 +227,13 @@ fn local_length_m(index: u32, p: vec3<f32>, direction: vec3<f32>, to_m: f32, sam
         sum += volume_density(index, Place(p + direction * at_m, 0.0, vec2<f32>(0.0)));
     }
     return sum * chord_m / f32(samples_count);
+}
+
+// Way to the top of the air, behind which no matter is.
+fn way_to_top_m(place: Place, direction: vec3<f32>) -> f32 {
+    let up = normalize(vec3<f32>(place.p.xy, place.p.z + atmosphere.radius_m));
+    let altitude_m = min(place.altitude_m, atmosphere.top_m);
+    return distance_to_shell_from_below(atmosphere.radius_m, altitude_m, dot(up, direction), atmosphere.top_m);
 }
 
 // Way to a change of altitude along a direction with this slope above ground that curves away, m.

@@ -15,14 +15,14 @@
 #import welkin::local_lists::local_lists
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::volume_field::{
-    fog_length_m, local_length_m, place_of, volumes, Place, FOG_COUNT,
+    fog_length_m, local_length_m, place_of, volumes, way_to_top_m, Place, FOG_COUNT,
 }
 #import welkin::volume_grid::{place_in_block, CELLS, COLUMNS, FOG_LEVELS}
 
 // Optical depth of fog and volumes in the bands, and in the last component what clouds and hills dim the light by.
 @group(1) @binding(42) var volume_light_image: texture_storage_3d<rgba16float, write>;
-// Straight up and down through fog and the volume itself: depths times the share that turns light from its line, and times
-// that which turns it back.
+// Straight up and down through fog and the volume itself: depths of the similar medium, and depths times the share that
+// turns light back.
 @group(1) @binding(43) var volume_sky_image: texture_storage_3d<rgba16float, write>;
 
 const SAMPLES: u32 = #{VOLUME_LIGHT_SAMPLES}u;
@@ -59,24 +59,29 @@ fn depth_to_light(index: u32, place: Place, light: u32) -> vec3<f32> {
     for (var i = 0u; i < FOG_COUNT; i++) {
         depth += volumes[i].extinction_per_m * fog_length_m(i, place, local, FARTHEST_M, SAMPLES);
     }
+    let air_m = way_to_top_m(place, toward);
     for (var i = 0u; i < volumes[index].occluder_count; i++) {
         let other = local_lists[volumes[index].occluders_first + i];
-        depth += volumes[other].extinction_per_m * local_length_m(other, place.p, toward, FARTHEST_M, SAMPLES);
+        depth += volumes[other].extinction_per_m * local_length_m(other, place.p, toward, air_m, SAMPLES);
     }
     return depth;
 }
 
+// Extinction that turns light from its line or takes it away, and that which turns it back, as means of the bands, 1/m.
+fn shares(index: u32) -> vec2<f32> {
+    let extinction_per_m = volumes[index].extinction_per_m;
+    let turns_per_m = volumes[index].similar_extinction * extinction_per_m;
+    return vec2<f32>(dot(turns_per_m, vec3<f32>(1.0 / 3.0)), volumes[index].backward * dot(extinction_per_m, vec3<f32>(1.0 / 3.0)));
+}
+
 fn vertical(index: u32, place: Place, upward: f32) -> vec2<f32> {
     let direction = vec3<f32>(0.0, 0.0, upward);
-    let weights = vec3<f32>(1.0 / 3.0);
     var depths = vec2<f32>(0.0);
     for (var i = 0u; i < FOG_COUNT; i++) {
-        let depth = dot(volumes[i].extinction_per_m, weights) * fog_length_m(i, place, direction, FARTHEST_M, SAMPLES);
-        depths += depth * vec2<f32>(volumes[i].similarity, volumes[i].backward);
+        depths += shares(i) * fog_length_m(i, place, direction, FARTHEST_M, SAMPLES);
     }
     if index >= FOG_COUNT {
-        let length_m = local_length_m(index, place.p, direction, FARTHEST_M, SAMPLES);
-        depths += dot(volumes[index].extinction_per_m, weights) * length_m * vec2<f32>(volumes[index].similarity, volumes[index].backward);
+        depths += shares(index) * local_length_m(index, place.p, direction, FARTHEST_M, SAMPLES);
     }
     return depths;
 }

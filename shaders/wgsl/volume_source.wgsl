@@ -15,6 +15,7 @@
 // Definitions: VOLUME_TERM_COUNT, VOLUME_ORDERS (light scattered more than once belongs in the picture), LIT, LIGHT_COUNT.
 
 #import welkin::atmosphere::atmosphere
+#import welkin::attenuation::mean_transmittance
 #import welkin::cloud_daylight::{light_in_air, surroundings, Surroundings}
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
@@ -72,15 +73,9 @@ fn lamp_phase_per_sr(index: u32, nu: f32) -> f32 {
     return term_per_sr(index, TERM_COUNT, clamp(nu, -1.0, 1.0));
 }
 
-// (1 - e^-x) / x.
-fn mean_through(x: vec3<f32>) -> vec3<f32> {
-    let thin = 1.0 - x * (0.5 - x / 6.0);
-    return select((1.0 - exp(-x)) / x, thin, x < vec3<f32>(1e-2));
-}
-
 // Mean of e^(-a tau) over a step.
 fn seen(stretch: Stretch, attenuation: vec3<f32>) -> vec3<f32> {
-    return exp(-attenuation * stretch.before) * mean_through(attenuation * stretch.within);
+    return exp(-attenuation * stretch.before) * mean_transmittance(attenuation * stretch.within);
 }
 
 // What media leave of the sky above and below a place in a local volume.
@@ -97,7 +92,7 @@ fn diffuse_source(piece: Piece, light: u32, view: vec3<f32>, arriving: vec3<f32>
         let slab = Slab(
             max(mu_s, 0.0) * arriving * cloudless, max(mu_s, 0.02),
             3.14159265 * around.above, volume.reduced_cosine,
-            atmosphere.ground_albedo, depths.x + depths.z
+            atmosphere.ground_albedo, depths.x + depths.z, volume.similar_albedo
         );
         let field = slab_light(slab, depths.x);
         // Light goes on as it went: more of it comes from where the net flux comes from.
@@ -130,12 +125,13 @@ fn from_lights(piece: Piece, stretch: Stretch) -> vec3<f32> {
         }
 #ifdef VOLUME_ORDERS
         let around = surroundings(piece.place.altitude_m, mu_s, observer.lights[light].irradiance);
-        let q = vec3<f32>(volumes[piece.index].similarity);
+        let q = volumes[piece.index].similar_extinction;
         let source = diffuse_source(piece, light, stretch.view, arriving, around, mu_s, depths, beam);
         radiance += source * seen(stretch, q);
-        // Light from behind that is scattered by small angles only.
+        // Light from behind that is scattered by small angles only, over the albedo, by which scattering is the extinction's.
         let behind = select(around.below, around.above, dot(stretch.view, up) > 0.0);
-        radiance += behind * (seen(stretch, vec3<f32>(1.0)) - q * seen(stretch, q));
+        let per_albedo = volumes[piece.index].extinction_per_m / max(volumes[piece.index].scattering_per_m, vec3<f32>(1e-30));
+        radiance += behind * per_albedo * (seen(stretch, vec3<f32>(1.0)) - q * seen(stretch, q));
 #endif
     }
     return radiance;

@@ -3,6 +3,7 @@
 use super::{Bound, Case};
 
 const APPROXIMATE: &str = "docs/fog.md has what light that matter scatters is off by";
+const SHADE: &str = "volumes do not shade the clear air (docs/fog.md)";
 const ENDLESS: &str = "the path tracer's walks do not end in matter that takes nothing away";
 
 /// A bank of fog, a ball of smoke and a lamp: numbers that the cases change.
@@ -84,7 +85,8 @@ pub fn cases() -> Vec<Case> {
         laws("fog, g = 0.9999", Media { fog_g: 0.9999, ..USUAL }),
         laws("fog, g = -0.9999", Media { fog_g: -0.9999, ..USUAL }).quick(),
         exact("a ball of 1 mm", Media { size_m: 1e-3, ..BLACK }),
-        exact("a ball of 10 000 km around the camera", Media { size_m: 1e7, absorption_per_m: 1e-6, ..BLACK }),
+        exact("a ball of 10 000 km around the camera", Media { size_m: 1e7, absorption_per_m: 1e-6, ..BLACK })
+            .bound(Bound::LawsOnly(SHADE)),
         exact("a ball of 1e6 /m", Media { absorption_per_m: 1e6, ..BLACK }),
         laws("a white ball of 1e6 /m", Media { scattering_per_m: 1e6, absorption_per_m: 0.0, ..USUAL }),
         exact("the camera on a ball's surface", Media { centre_m: [5.0, -8.660254, 2.0], ..BLACK }),

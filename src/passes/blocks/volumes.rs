@@ -9,7 +9,7 @@ use super::atmosphere::{PhaseLobeBlock, scaled_lobes};
 use super::lamp_fields::LampFields;
 use super::local_lists::LocalLists;
 use super::vec3;
-use crate::passes::ordinates::coefficients::{BAND_ASYMMETRY, band_attenuations, reduced_cosine};
+use crate::passes::ordinates::coefficients::{BAND_ASYMMETRY, band_attenuations, forward_share, reduced_cosine};
 use crate::plan::{CloudScattering, Facts};
 
 /// Lobes that a term has room for: WGSL `TERM_LOBES`.
@@ -36,7 +36,9 @@ pub struct VolumeBlock {
     pub(super) top_m: f32,
     pub(super) grid_size: [u32; 3],
     pub(super) grid_first: u32,
+    pub(super) similar_extinction: [f32; 3],
     pub(super) similarity: f32,
+    pub(super) similar_albedo: [f32; 3],
     pub(super) reduced_cosine: f32,
     pub(super) backward: f32,
     pub(super) is_even: u32,
@@ -45,7 +47,7 @@ pub struct VolumeBlock {
     pub(super) occluders_first: u32,
     pub(super) occluder_count: u32,
     pub(super) lamp_field: u32,
-    pub(super) padding: u32,
+    pub(super) padding: [u32; 3],
 }
 
 /// WGSL `VolumeTerm`.
@@ -66,20 +68,31 @@ pub(super) fn mean_chord_m(form: &VolumeForm) -> f64 {
     }
 }
 
+/// The medium without the scattering that hardly turns light from its line (Joseph, Wiscombe & Weinman 1976).
+struct Similar {
+    /// Its extinction over that of the volume, 1 where there is none.
+    extinction: Bands,
+    /// Its single-scattering albedo.
+    albedo: Bands,
+}
+
+impl Similar {
+    fn new(volume: &Volume) -> Self {
+        let forward = forward_share(&volume.phase);
+        let whole = volume.extinction_per_m();
+        let albedo = |band: usize| if whole[band] > 0.0 { volume.scattering_per_m[band] / whole[band] } else { 0.0 };
+        let extinction: Bands = std::array::from_fn(|band| 1.0 - forward * albedo(band));
+        Self { extinction, albedo: std::array::from_fn(|band| (1.0 - forward) * albedo(band) / extinction[band]) }
+    }
+}
+
 /// Of light that was scattered once in a volume, what is scattered again and again, over the light: x / (1 + (1 - W) x)
-/// with x the mean chord in optical depths of the similar medium.
-fn again(volume: &Volume) -> Bands {
-    let chord_m = mean_chord_m(&volume.form);
-    let forward = volume.phase.legendre_moment(2).max(0.0);
-    let extinction = volume.extinction_per_m();
+/// with x the mean chord in optical depths of the similar medium and W its albedo.
+fn again(volume: &Volume, similar: &Similar) -> Bands {
+    let (chord_m, extinction) = (mean_chord_m(&volume.form), volume.extinction_per_m());
     std::array::from_fn(|band| {
-        let turned = (1.0 - forward) * volume.scattering_per_m[band];
-        let whole = extinction[band] - forward * volume.scattering_per_m[band];
-        if whole <= 0.0 {
-            return 0.0;
-        }
-        let x = whole * chord_m;
-        turned / whole * x / (1.0 + (1.0 - turned / whole) * x)
+        let x = similar.extinction[band] * extinction[band] * chord_m;
+        similar.albedo[band] * x / (1.0 + (1.0 - similar.albedo[band]) * x)
     })
 }
 
@@ -87,7 +100,7 @@ impl VolumeBlock {
     fn new(facts: &Facts, index: usize, lists: &LocalLists, fields: &LampFields, grid_first: u32) -> Self {
         let volume = facts.volumes[index];
         let p = VolumeParameters::new(volume, facts.scene.time_s);
-        let [g, f] = [1, 2].map(|degree| volume.phase.legendre_moment(degree));
+        let similar = Similar::new(volume);
         let fog = facts.fog_count() as usize;
         let levels = facts.settings.volumes.fog_levels as usize;
         // One that is not seen has no block; nothing asks for it.
@@ -113,16 +126,18 @@ impl VolumeBlock {
             top_m: p.top_m,
             grid_size: volume.grid.as_ref().map_or([0; 3], |grid| grid.size().map(|n| n as u32)),
             grid_first,
-            similarity: (1.0 - f) as f32,
+            similar_extinction: vec3(similar.extinction),
+            similarity: (1.0 - forward_share(&volume.phase)) as f32,
+            similar_albedo: vec3(similar.albedo),
             reduced_cosine: reduced_cosine(&volume.phase) as f32,
-            backward: (1.0 - g) as f32,
+            backward: (1.0 - volume.phase.mean_cosine()) as f32,
             is_even: u32::from(is_even),
-            again: vec3(again(volume)),
+            again: vec3(again(volume, &similar)),
             first_block: first_block as u32,
             occluders_first: occluders.start as u32,
             occluder_count: occluders.len() as u32,
             lamp_field: fields.of_volume(volume),
-            padding: 0,
+            padding: [0; 3],
         }
     }
 }

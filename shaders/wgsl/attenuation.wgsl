@@ -1,0 +1,14 @@
+#define_import_path welkin::attenuation
+// What an optical depth takes, without cancellation where it is small.
+
+// 1 - exp(-tau).
+fn opacity(tau: vec3<f32>) -> vec3<f32> {
+    let thin = tau * (1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau * (1.0 / 24.0 - tau / 120.0))));
+    return select(1.0 - exp(-tau), thin, tau < vec3<f32>(0.2));
+}
+
+// (1 - exp(-tau)) / tau, the mean of exp(-t) over t in [0, tau].
+fn mean_transmittance(tau: vec3<f32>) -> vec3<f32> {
+    let thin = 1.0 - tau * (0.5 - tau / 6.0);
+    return select((1.0 - exp(-tau)) / max(tau, vec3<f32>(1e-3)), thin, tau < vec3<f32>(1e-2));
+}
