@@ -22,6 +22,7 @@ mod planet;
 mod profile;
 pub mod quadrature;
 pub mod sky_tables;
+pub mod slab_field;
 pub mod spectrum;
 mod table;
 pub mod volume;

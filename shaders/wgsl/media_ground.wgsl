@@ -6,8 +6,8 @@
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::cloud_daylight::{light_in_air, surroundings}
 #import welkin::cluster_members::{lamps_of, next_member, NONE}
-#import welkin::observer::observer
-#import welkin::slab::{downward, Slab}
+#import welkin::observer::{observer, LIGHT_COUNT}
+#import welkin::slab_field::{slab_on_ground, slab_spot, slab_table}
 #import welkin::tables::table_sampler
 #import welkin::volume_field::{local_length_m, volumes, way_to_top_m, Place, FOG_COUNT, VOLUME_COUNT}
 #import welkin::volume_grid::{block_uvw, spot_of}
@@ -20,6 +20,9 @@
 #endif
 #endif
 
+// A lower sun counts as this high in a slab.
+const LOWEST_SUN: f32 = 0.02;
+
 // Share of the light on a horizontal plane, of which shares of the beam and of the sky reach the top of the fog.
 fn fog_share(place: Place, above: vec2<f32>) -> f32 {
     if FOG_COUNT == 0u || place.altitude_m >= volumes[0].top_m {
@@ -30,11 +33,11 @@ fn fog_share(place: Place, above: vec2<f32>) -> f32 {
     let mu = observer.lights[0].direction.z;
     let beam = above.x * max(mu, 0.0) * light_in_air(0u, place.altitude_m, mu);
     let sky = above.y * PI * surroundings(place.altitude_m, mu, observer.lights[0].irradiance).above;
-    let fog = volumes[0];
-    let slab = Slab(
-        beam, max(mu, 0.02), sky, fog.reduced_cosine, atmosphere.ground_albedo, depths.x + depths.z, fog.similar_albedo
-    );
-    return (downward(slab, depths.x) / max(beam + sky, vec3<f32>(1e-20))).g;
+    let on_ground = slab_spot(depths.x, depths.z);
+    let straight = exp(-depths.x / max(mu, LOWEST_SUN));
+    let from_beam = beam * (straight + slab_on_ground(slab_table(0u, 0u), on_ground));
+    let from_sky = sky * slab_on_ground(slab_table(0u, LIGHT_COUNT), on_ground);
+    return ((from_beam + from_sky) / max(beam + sky, vec3<f32>(1e-20))).g;
 }
 
 // Points on the way through an uneven volume.

@@ -54,13 +54,13 @@ struct Volume {
     backward: f32,
     // Whether density is 1 all through a local volume.
     is_even: u32,
+    // Volumes that may stand between it and a light, in `local_lists`: where they begin, and how many.
+    occluders_first: u32,
+    occluder_count: u32,
     // Of the light that it scatters once, what it scatters again, and again: over the light itself.
     again: vec3<f32>,
     // First block of its grid of light.
     first_block: u32,
-    // Volumes that may stand between it and a light, in `local_lists`: where they begin, and how many.
-    occluders_first: u32,
-    occluder_count: u32,
     // Its table of lamps' scattered light: welkin::lamp_field.
     lamp_field: u32,
 }

@@ -6,7 +6,7 @@
 //             in welkin::cloud_source; a_k per band, as a coloured volume absorbs
 //   stretch   what a step does to light: depth before it and in it, of all media
 //
-// Light scattered many times is that of an even slab in fog (welkin::slab); in a local volume what is scattered once
+// Light scattered many times is that of an even slab in fog (welkin::slab_field); in a local volume what is scattered once
 // escapes with the probability 1 / (1 + x), x its mean chord in optical depths (Wigner's rational approximation), or is
 // scattered again.
 //
@@ -14,12 +14,12 @@
 //
 // Definitions: VOLUME_TERM_COUNT, VOLUME_ORDERS (light scattered more than once belongs in the picture), LIT, LIGHT_COUNT.
 
-#import welkin::atmosphere::atmosphere
+#import welkin::atmosphere::{atmosphere, PI}
 #import welkin::attenuation::mean_transmittance
 #import welkin::cloud_daylight::{light_in_air, surroundings, Surroundings}
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
-#import welkin::slab::{slab_light, Slab}
+#import welkin::slab_field::{slab_light, slab_spot, slab_table}
 #import welkin::tables::table_sampler
 #import welkin::volume_field::{volumes, Place, FOG_COUNT}
 #import welkin::volume_grid::{block_uvw, spot_of}
@@ -88,16 +88,16 @@ fn sky_share(depths: vec4<f32>) -> vec2<f32> {
 fn diffuse_source(piece: Piece, light: u32, view: vec3<f32>, arriving: vec3<f32>, around: Surroundings, mu_s: f32, depths: vec4<f32>, beam: vec4<f32>) -> vec3<f32> {
     let volume = volumes[piece.index];
     if piece.index < FOG_COUNT {
-        let cloudless = exp(-beam.a);
-        let slab = Slab(
-            max(mu_s, 0.0) * arriving * cloudless, max(mu_s, 0.02),
-            3.14159265 * around.above, volume.reduced_cosine,
-            atmosphere.ground_albedo, depths.x + depths.z, volume.similar_albedo
-        );
-        let field = slab_light(slab, depths.x);
+        let spot = slab_spot(depths.x, depths.z);
+        let of_beam = slab_light(slab_table(piece.index, light), spot);
+        let of_sky = slab_light(slab_table(piece.index, LIGHT_COUNT), spot);
+        let beam_flux = max(mu_s, 0.0) * exp(-beam.a) * arriving;
+        let sky_flux = PI * around.above;
+        let mean = beam_flux * of_beam.mean_radiance + sky_flux * of_sky.mean_radiance;
+        let upward = beam_flux * of_beam.upward + sky_flux * of_sky.upward;
         // Light goes on as it went: more of it comes from where the net flux comes from.
-        let forward = volume.reduced_cosine * 3.0 / FOUR_PI * field.upward * -view.z;
-        return max(field.mean_radiance + forward, vec3<f32>(0.0)) * volume.similarity;
+        let forward = volume.reduced_cosine * 3.0 / FOUR_PI * upward * -view.z;
+        return max(mean + forward, vec3<f32>(0.0)) * volume.similarity;
     }
     let mean_depth = dot(beam.rgb, vec3<f32>(1.0 / 3.0));
     let left = exp(-beam.a) / (1.0 + 0.75 * volume.backward * mean_depth);

@@ -75,6 +75,8 @@ impl<'a> Recording<'a> {
             resources
                 .fill_buffer("local_lights", &local_light_blocks(facts, &lamps, &lists, &resources.lamp_fields))?;
             resources.fill_buffer("lamp_fields", &resources.lamp_fields.to_texels())?;
+            let slab_fields = resources.slab_fields.to_texels(facts);
+            resources.fill_buffer("slab_fields", &slab_fields)?;
         }
         if let Some(terrain) = facts.scene.terrain.as_ref() {
             resources.fill_buffer("height_field", &height_field_block(terrain))?;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use welkin_shaders::{Definitions, ParameterBuffers, Shader};
 
-use super::blocks::LampFields;
+use super::blocks::{LampFields, SlabFields};
 use super::pipelines::Pipelines;
 use super::{HostRecording, RenderError, ShaderSources};
 use crate::gpu::{
@@ -41,6 +41,8 @@ pub struct Resources {
     pub clock: Option<Clock>,
     /// Light around lamps, of the kinds of matter that were seen last.
     pub lamp_fields: LampFields,
+    /// Light scattered in fog, of the banks that were seen last.
+    pub slab_fields: SlabFields,
     /// Images of the host's that a frame is drawn into, and what it does with them next.
     pub targets: Vec<(&'static str, GpuImage, NextUse)>,
     /// The frame of a host's that is being recorded.
@@ -103,6 +105,7 @@ impl Resources {
             screen: ScreenEncoding::Srgb,
             clock: None,
             lamp_fields: LampFields::default(),
+            slab_fields: SlabFields::default(),
             targets: Vec::new(),
             host: None,
         })

@@ -18,6 +18,10 @@ const ROWS: u32 = 48;
 const DEPTH_ROWS: u32 = 192;
 /// Least orders that are computed one by one.
 const ORDERS: u32 = 8;
+/// Depth from which on rows and orders grow: the shell now lies near the top of the air, where rows are furthest apart.
+const OPAQUE: f64 = 1e4;
+/// How often rows double at most, once for each power of ten; orders half as often.
+const DOUBLINGS: f64 = 2.0;
 
 /// Vertical optical depth of all matter, the largest of the bands.
 fn depth(constituents: &[&Constituent], top_m: f64) -> f64 {
@@ -32,17 +36,21 @@ fn depth(constituents: &[&Constituent], top_m: f64) -> f64 {
 
 /// The settings as air of this depth needs them.
 pub fn settings(settings: Settings, constituents: &[&Constituent], top_m: f64) -> Settings {
-    if depth(constituents, top_m) <= THICK {
+    let depth = depth(constituents, top_m);
+    if depth <= THICK {
         return settings;
     }
-    let rows = |[columns, rows]: [u32; 2], least: u32| [columns, rows.max(least)];
+    let doublings = (depth / OPAQUE).log10().clamp(0.0, DOUBLINGS);
+    let grown = |count: u32, doublings: f64| (f64::from(count) * doublings.exp2()).round() as u32;
+    let rows = |[columns, rows]: [u32; 2], least: u32| [columns, rows.max(grown(least, doublings))];
+    let orders = grown(ORDERS, 0.5 * doublings);
     Settings {
         nodes_per_leg: NODES * settings.nodes_per_leg,
         optical_depth_size: rows(settings.optical_depth_size, DEPTH_ROWS),
         multiple_scattering_size: rows(settings.multiple_scattering_size, ROWS),
         source_size: rows(settings.source_size, ROWS),
-        orders: settings.orders.max(ORDERS),
-        source_orders: settings.source_orders.max(ORDERS),
+        orders: settings.orders.max(orders),
+        source_orders: settings.source_orders.max(orders),
         ..settings
     }
 }

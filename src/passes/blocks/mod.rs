@@ -10,6 +10,7 @@ mod local_lights;
 mod local_lists;
 mod observer;
 mod quadrature;
+mod slab_fields;
 mod terrain;
 mod volumes;
 
@@ -23,6 +24,7 @@ pub use local_lights::{lamps, local_light_blocks, local_light_count};
 pub use local_lists::LocalLists;
 pub use observer::observer_block;
 pub use quadrature::{GaussNodeBlock, cosine_nodes, gauss_nodes, grid_nodes};
+pub use slab_fields::SlabFields;
 pub use terrain::height_field_block;
 pub use volumes::{volume_blocks, volume_samples, volume_term_count, volume_terms};
 

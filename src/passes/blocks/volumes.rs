@@ -42,10 +42,10 @@ pub struct VolumeBlock {
     pub(super) reduced_cosine: f32,
     pub(super) backward: f32,
     pub(super) is_even: u32,
-    pub(super) again: [f32; 3],
-    pub(super) first_block: u32,
     pub(super) occluders_first: u32,
     pub(super) occluder_count: u32,
+    pub(super) again: [f32; 3],
+    pub(super) first_block: u32,
     pub(super) lamp_field: u32,
     pub(super) padding: [u32; 3],
 }
@@ -69,15 +69,15 @@ pub(super) fn mean_chord_m(form: &VolumeForm) -> f64 {
 }
 
 /// The medium without the scattering that hardly turns light from its line (Joseph, Wiscombe & Weinman 1976).
-struct Similar {
+pub(super) struct Similar {
     /// Its extinction over that of the volume, 1 where there is none.
     extinction: Bands,
     /// Its single-scattering albedo.
-    albedo: Bands,
+    pub(super) albedo: Bands,
 }
 
 impl Similar {
-    fn new(volume: &Volume) -> Self {
+    pub(super) fn new(volume: &Volume) -> Self {
         let forward = forward_share(&volume.phase);
         let whole = volume.extinction_per_m();
         let albedo = |band: usize| if whole[band] > 0.0 { volume.scattering_per_m[band] / whole[band] } else { 0.0 };

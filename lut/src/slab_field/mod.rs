@@ -1,0 +1,150 @@
+//! Diffuse light inside a wide, even slab of matter on a Lambertian ground, under a beam and under an even sky.
+//!
+//! A point in the slab has one optical depth above it and another below. Both are nodes of a table, so that what happens near
+//! either surface is resolved however thick the slab is. For each node the reflection and transmission of that much matter
+//! are found by doubling, and the slabs above and below a point, the latter with the ground, are joined there by adding
+//! (van de Hulst 1963; Hansen & Travis 1974, Space Science Reviews 16, section 3), with [`STREAMS`] directions in each hemisphere.
+//!
+//! The phase function has two moments, 1 and g: that of the similar medium which stands for one that scatters forward (Joseph,
+//! Wiscombe & Weinman 1976). Radiances are means over azimuths, which is all that fluxes and means need.
+
+mod layer;
+
+use std::f64::consts::PI;
+
+use layer::{Layer, Streams, Vector};
+
+/// Directions in each hemisphere.
+pub const STREAMS: usize = 8;
+/// Optical depths of a table along each axis.
+pub const DEPTHS: usize = 24;
+/// Depths are nodes of ln(1 + depth / this).
+pub const NEAR_DEPTH: f64 = 0.05;
+/// The last of them; what lies deeper is as deep.
+pub const LAST_DEPTH: f64 = 60.0;
+
+/// The optical depth of a node.
+pub fn node_depth(node: usize) -> f64 {
+    NEAR_DEPTH * ((1.0 + LAST_DEPTH / NEAR_DEPTH).powf(node as f64 / (DEPTHS - 1) as f64) - 1.0)
+}
+
+/// The matter of a slab and the ground below it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlabMatter {
+    /// Single-scattering albedo, in [0, 1].
+    pub albedo: f64,
+    /// Mean cosine of scattering, in (-1/3, 1): beyond, a phase function of two moments is negative somewhere.
+    pub mean_cosine: f64,
+    /// Albedo of the ground, in [0, 1].
+    pub ground_albedo: f64,
+}
+
+/// Where light comes from, with a flux of 1 through a horizontal plane above the slab.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SlabLight {
+    /// Parallel light from a direction of this cosine with the vertical, in (0, 1].
+    Beam(f64),
+    /// Light of the same radiance from everywhere above.
+    Sky,
+}
+
+/// Diffuse light at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlabField {
+    /// Mean radiance over all directions, 1/sr.
+    pub mean_radiance: f64,
+    /// Flux downwards through a horizontal plane.
+    pub downward: f64,
+    /// Flux upwards.
+    pub upward: f64,
+}
+
+/// Slabs of one kind of matter.
+#[derive(Debug, Clone)]
+pub struct Slabs {
+    matter: SlabMatter,
+    streams: Streams,
+    layers: Vec<Layer>,
+}
+
+impl Slabs {
+    /// Of this matter, with all depths of a table.
+    pub fn new(matter: SlabMatter) -> Self {
+        let streams = Streams::new(matter.albedo.clamp(0.0, 1.0), matter.mean_cosine);
+        let layers = (0..DEPTHS).map(|node| Layer::new(&streams, node_depth(node))).collect();
+        Self { matter, streams, layers }
+    }
+
+    /// The table of a light: the diffuse field below one node's depth and above another's, the latter fastest.
+    pub fn table(&self, light: SlabLight) -> Vec<SlabField> {
+        let (mut table, sources) = (Vec::with_capacity(DEPTHS * DEPTHS), self.sources(light));
+        let grounds: Vec<_> = (0..DEPTHS).map(|node| self.on_ground(node, &sources[node], light)).collect();
+        for above in 0..DEPTHS {
+            let entering = match light {
+                SlabLight::Beam(_) => sources[above].down,
+                SlabLight::Sky => self.layers[above].transmitted.times(&[1.0 / PI; STREAMS]),
+            };
+            let beam = beam_left(light, node_depth(above));
+            for (reflected, upward) in &grounds {
+                table.push(self.joined(
+                    &self.layers[above],
+                    &entering,
+                    reflected,
+                    &upward.map(|radiance| beam * radiance),
+                ));
+            }
+        }
+        table
+    }
+
+    /// What each layer scatters out of a beam whose flux is 1 at its top.
+    fn sources(&self, light: SlabLight) -> Vec<layer::Source> {
+        match light {
+            SlabLight::Beam(mu) => (0..DEPTHS).map(|node| layer::source(&self.streams, node_depth(node), mu)).collect(),
+            SlabLight::Sky => vec![layer::Source::default(); DEPTHS],
+        }
+    }
+
+    /// Reflection of a layer that lies on the ground, and what it sends up of a beam whose flux is 1 at its top.
+    fn on_ground(&self, node: usize, source: &layer::Source, light: SlabLight) -> (layer::Matrix, Vector) {
+        let layer = &self.layers[node];
+        let albedo = self.matter.ground_albedo;
+        // The ground sends up its albedo of the flux that arrives, evenly; the layer returns some of that.
+        let flux_of_even = self.streams.flux(&layer.reflected.times(&[1.0; STREAMS]));
+        let per_flux = albedo / PI / (1.0 - albedo / PI * flux_of_even);
+        let risen = layer.transmitted.times(&[1.0; STREAMS]);
+        let mut reflected = layer.reflected;
+        for column in 0..STREAMS {
+            let arriving = self.streams.flux(&layer.transmitted.column(column));
+            for row in 0..STREAMS {
+                reflected.0[row][column] += risen[row] * per_flux * arriving;
+            }
+        }
+        let arriving = self.streams.flux(&source.down) + beam_left(light, node_depth(node));
+        let sent = std::array::from_fn(|i| source.up[i] + risen[i] * per_flux * arriving);
+        (reflected, if matches!(light, SlabLight::Sky) { [0.0; STREAMS] } else { sent })
+    }
+
+    /// The field between a layer and what lies below it.
+    fn joined(&self, above: &Layer, entering: &Vector, below: &layer::Matrix, sent: &Vector) -> SlabField {
+        let returned = above.reflected.times(sent);
+        let arriving = std::array::from_fn(|i| entering[i] + returned[i]);
+        let down = above.reflected.product(below).solve_from_identity(&arriving);
+        let reflected = below.times(&down);
+        let up: Vector = std::array::from_fn(|i| reflected[i] + sent[i]);
+        let sum: Vector = std::array::from_fn(|i| 0.5 * (up[i] + down[i]));
+        SlabField {
+            mean_radiance: self.streams.mean(&sum),
+            downward: self.streams.flux(&down),
+            upward: self.streams.flux(&up),
+        }
+    }
+}
+
+/// What is left of a beam's flux behind an optical depth.
+fn beam_left(light: SlabLight, depth: f64) -> f64 {
+    match light {
+        SlabLight::Beam(mu) => (-depth / mu).exp(),
+        SlabLight::Sky => 0.0,
+    }
+}
