@@ -16,7 +16,7 @@ const THIN: f64 = 1e-6;
 pub struct Matrix(pub [Vector; STREAMS]);
 
 impl Matrix {
-    fn from_fn(entry: impl Fn(usize, usize) -> f64) -> Self {
+    pub fn from_fn(entry: impl Fn(usize, usize) -> f64) -> Self {
         Self(std::array::from_fn(|row| std::array::from_fn(|column| entry(row, column))))
     }
 
@@ -32,7 +32,7 @@ impl Matrix {
         Self::from_fn(|row, column| (0..STREAMS).map(|k| self.0[row][k] * other.0[k][column]).sum())
     }
 
-    fn sum(&self, other: &Self) -> Self {
+    pub fn sum(&self, other: &Self) -> Self {
         Self::from_fn(|row, column| self.0[row][column] + other.0[row][column])
     }
 
@@ -41,11 +41,10 @@ impl Matrix {
         let mut left = Self::from_fn(|row, column| f64::from(u8::from(row == column)) - self.0[row][column]).0;
         let mut right = *vector;
         for pivot in 0..STREAMS {
+            let of_pivot = left[pivot];
             for row in pivot + 1..STREAMS {
-                let factor = left[row][pivot] / left[pivot][pivot];
-                for column in pivot..STREAMS {
-                    left[row][column] -= factor * left[pivot][column];
-                }
+                let factor = left[row][pivot] / of_pivot[pivot];
+                left[row].iter_mut().zip(of_pivot).for_each(|(entry, other)| *entry -= factor * other);
                 right[row] -= factor * right[pivot];
             }
         }

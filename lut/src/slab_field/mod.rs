@@ -12,7 +12,7 @@ mod layer;
 
 use std::f64::consts::PI;
 
-use layer::{Layer, Streams, Vector};
+use layer::{Layer, Matrix, Source, Streams, Vector, source};
 
 /// Directions in each hemisphere.
 pub const STREAMS: usize = 8;
@@ -79,54 +79,44 @@ impl Slabs {
     pub fn table(&self, light: SlabLight) -> Vec<SlabField> {
         let (mut table, sources) = (Vec::with_capacity(DEPTHS * DEPTHS), self.sources(light));
         let grounds: Vec<_> = (0..DEPTHS).map(|node| self.on_ground(node, &sources[node], light)).collect();
-        for above in 0..DEPTHS {
+        for (node, (above, source)) in self.layers.iter().zip(&sources).enumerate() {
             let entering = match light {
-                SlabLight::Beam(_) => sources[above].down,
-                SlabLight::Sky => self.layers[above].transmitted.times(&[1.0 / PI; STREAMS]),
+                SlabLight::Beam(_) => source.down,
+                SlabLight::Sky => above.transmitted.times(&[1.0 / PI; STREAMS]),
             };
-            let beam = beam_left(light, node_depth(above));
+            let beam = beam_left(light, node_depth(node));
             for (reflected, upward) in &grounds {
-                table.push(self.joined(
-                    &self.layers[above],
-                    &entering,
-                    reflected,
-                    &upward.map(|radiance| beam * radiance),
-                ));
+                table.push(self.joined(above, &entering, reflected, &upward.map(|radiance| beam * radiance)));
             }
         }
         table
     }
 
     /// What each layer scatters out of a beam whose flux is 1 at its top.
-    fn sources(&self, light: SlabLight) -> Vec<layer::Source> {
+    fn sources(&self, light: SlabLight) -> Vec<Source> {
         match light {
-            SlabLight::Beam(mu) => (0..DEPTHS).map(|node| layer::source(&self.streams, node_depth(node), mu)).collect(),
-            SlabLight::Sky => vec![layer::Source::default(); DEPTHS],
+            SlabLight::Beam(mu) => (0..DEPTHS).map(|node| source(&self.streams, node_depth(node), mu)).collect(),
+            SlabLight::Sky => vec![Source::default(); DEPTHS],
         }
     }
 
     /// Reflection of a layer that lies on the ground, and what it sends up of a beam whose flux is 1 at its top.
-    fn on_ground(&self, node: usize, source: &layer::Source, light: SlabLight) -> (layer::Matrix, Vector) {
+    fn on_ground(&self, node: usize, source: &Source, light: SlabLight) -> (Matrix, Vector) {
         let layer = &self.layers[node];
         let albedo = self.matter.ground_albedo;
         // The ground sends up its albedo of the flux that arrives, evenly; the layer returns some of that.
         let flux_of_even = self.streams.flux(&layer.reflected.times(&[1.0; STREAMS]));
         let per_flux = albedo / PI / (1.0 - albedo / PI * flux_of_even);
         let risen = layer.transmitted.times(&[1.0; STREAMS]);
-        let mut reflected = layer.reflected;
-        for column in 0..STREAMS {
-            let arriving = self.streams.flux(&layer.transmitted.column(column));
-            for row in 0..STREAMS {
-                reflected.0[row][column] += risen[row] * per_flux * arriving;
-            }
-        }
+        let returned =
+            Matrix::from_fn(|row, column| risen[row] * per_flux * self.streams.flux(&layer.transmitted.column(column)));
         let arriving = self.streams.flux(&source.down) + beam_left(light, node_depth(node));
         let sent = std::array::from_fn(|i| source.up[i] + risen[i] * per_flux * arriving);
-        (reflected, if matches!(light, SlabLight::Sky) { [0.0; STREAMS] } else { sent })
+        (layer.reflected.sum(&returned), sent)
     }
 
     /// The field between a layer and what lies below it.
-    fn joined(&self, above: &Layer, entering: &Vector, below: &layer::Matrix, sent: &Vector) -> SlabField {
+    fn joined(&self, above: &Layer, entering: &Vector, below: &Matrix, sent: &Vector) -> SlabField {
         let returned = above.reflected.times(sent);
         let arriving = std::array::from_fn(|i| entering[i] + returned[i]);
         let down = above.reflected.product(below).solve_from_identity(&arriving);
