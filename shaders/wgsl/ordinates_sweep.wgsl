@@ -128,10 +128,10 @@ fn neighbour_of(box: Level, place: vec3<i32>) -> Neighbour {
     return Neighbour(vec3<u32>(cell), all(cell >= vec3<i32>(0)) && all(cell < size));
 }
 
-// Light that enters a cell along a direction from where there is no neighbour.
-fn from_outside(box: Level, cell: vec3<u32>, place: vec3<i32>, octant: u32, direction: u32) -> vec2<f32> {
+// Light that enters a cell along a direction from where there is no neighbour; `ground` is the ground's.
+fn from_outside(box: Level, ground: vec2<f32>, place: vec3<i32>, octant: u32, direction: u32) -> vec2<f32> {
     if place.z < 0 {
-        return ground_radiance(box, cell);
+        return ground;
     }
     if place.z >= i32(box.size.z) {
         return vec2<f32>(0.0, 1.0);
@@ -147,10 +147,15 @@ fn from_outside(box: Level, cell: vec3<u32>, place: vec3<i32>, octant: u32, dire
 struct Inflow {
     cells: array<Neighbour, 6>,
     faces: array<Face, 6>,
+    // Of the ground, which is the same in all directions, into a lowest cell.
+    ground: vec2<f32>,
 }
 
 fn inflow_of(box: Level, cell: vec3<u32>) -> Inflow {
     var inflow: Inflow;
+    if cell.z == 0u {
+        inflow.ground = ground_radiance(box, cell);
+    }
     for (var axis = 0u; axis < 3u; axis++) {
         for (var side = 0u; side < 2u; side++) {
             var place = vec3<i32>(cell);
@@ -194,7 +199,7 @@ fn entering(
         } else {
             var place = vec3<i32>(cell);
             place[axis] += select(-1, 1, is_falling);
-            light += along[axis] * from_outside(box, cell, place, octant, direction);
+            light += along[axis] * from_outside(box, (*inflow).ground, place, octant, direction);
         }
     }
     return light;
