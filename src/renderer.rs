@@ -135,6 +135,12 @@ impl Renderer {
         self.resources.compiled_pipelines()
     }
 
+    /// How many of them were compiled ahead of a recording that then did without: none, unless a pass chose another variant than it
+    /// was expected to.
+    pub fn idle_pipelines(&self) -> usize {
+        self.resources.idle_pipelines()
+    }
+
     /// From now on frames come in submissions short enough for others who share the device, and can be stopped. A
     /// stopped frame ends in [`crate::gpu::GpuError::Stopped`]; the next one computes what it has left undone.
     pub fn set_pace(&mut self, pace: Option<Pace>) {
@@ -310,7 +316,9 @@ impl Renderer {
         and_then: impl FnOnce(&mut Recording) -> Result<(), RenderError>,
     ) -> Result<Timings, RenderError> {
         let mut recording = Recording::new(label, facts, &mut self.resources)?;
-        for pass in passes.iter().filter(|pass| plan.decision(pass.declaration.name) == Some(Decision::Run)) {
+        let run = |pass: &&&Pass| plan.decision(pass.declaration.name) == Some(Decision::Run);
+        recording.compile_ahead(passes.iter().filter(run).copied());
+        for pass in passes.iter().filter(run) {
             (pass.record)(&mut recording)?;
         }
         and_then(&mut recording)?;

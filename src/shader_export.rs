@@ -1,7 +1,7 @@
 //! The shader files that engines take: functions that read a pack's tables, and the passes that bake them.
 
 use serde::Serialize;
-use welkin_shaders::{BindingKind, Definition, Definitions, Dimension, Language, Shader, ShaderError, Sources};
+use welkin_shaders::{BindingKind, Definitions, Dimension, Language, Shader, ShaderError, Sources};
 
 use crate::passes::definitions;
 use crate::plan::Facts;
@@ -18,14 +18,13 @@ pub struct ShaderFile {
 /// The pass that names the functions for engines.
 const FUNCTIONS: &str = "pack_functions";
 
-/// Files with an entry point: their stem, their pass, and the definitions that are theirs.
-const ENTRY_POINTS: [(&str, &str, &[&str]); 6] = [
-    ("sky_probe", "pack_probe", &[]),
-    ("bake_optical_depth", "optical_depth", &[]),
-    ("bake_first_source", "first_source", &[]),
-    ("bake_higher_source", "higher_source", &[]),
-    ("bake_last_source", "higher_source", &["CLOSE_SERIES"]),
-    ("bake_scattering", "scattering_table", &[]),
+/// Files with an entry point: their stem and their pass.
+const ENTRY_POINTS: [(&str, &str); 5] = [
+    ("sky_probe", "pack_probe"),
+    ("bake_optical_depth", "optical_depth"),
+    ("bake_first_source", "first_source"),
+    ("bake_higher_source", "higher_source"),
+    ("bake_scattering", "scattering_table"),
 ];
 
 /// What `interface.json` says.
@@ -64,7 +63,8 @@ struct Member {
 
 /// All files in one language: `sky.*`, functions to include; `sky_probe.*`, which answers probes with them;
 /// `bake_*.*`, compute passes that make the tables, specialised for the constituents of a scene's air; and
-/// `interface.json`, their entry points and bindings. SPIR-V has no functions to include.
+/// `interface.json`, their entry points and bindings. SPIR-V has no functions to include. `bake_higher_source` is dispatched once
+/// for each order; in the last dispatch, which closes the series, `order` is a smaller image than `sum`.
 ///
 /// # Errors
 /// [`ShaderError`] for what the language cannot say.
@@ -78,9 +78,7 @@ pub fn shader_files(language: Language, facts: &Facts) -> Result<Vec<ShaderFile>
         files.push(ShaderFile { name: format!("sky.{ending}"), bytes: text.into_bytes() });
     }
     let mut entry_points = Vec::new();
-    for (stem, pass, flags) in ENTRY_POINTS {
-        let mut definitions = definitions.clone();
-        definitions.extend(flags.iter().map(|flag| ((*flag).to_owned(), Definition::Bool(true))));
+    for (stem, pass) in ENTRY_POINTS {
         let exported = language.export(&sources, pass, &definitions)?;
         let name = format!("{stem}.{}", language.extension());
         entry_points.push(entry_point(&name, exported.entry_point, pass, &definitions)?);

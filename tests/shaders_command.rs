@@ -23,7 +23,7 @@ fn every_language_has_its_functions_and_passes_and_says_how_they_are_bound() {
         let output = welkin(folder.path(), &format!("shaders --language {language} --out {language}"));
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let found = names(&folder.path().join(language));
-        let stems = ["sky_probe", "bake_optical_depth", "bake_first_source", "bake_higher_source", "bake_last_source"];
+        let stems = ["sky_probe", "bake_optical_depth", "bake_first_source", "bake_higher_source"];
         let mut expected: BTreeSet<String> = stems.iter().map(|stem| format!("{stem}.{pass}")).collect();
         expected.extend([format!("bake_scattering.{pass}"), format!("sky.{functions}"), "interface.json".to_owned()]);
         assert_eq!(found, expected, "{language}");

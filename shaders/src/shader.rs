@@ -185,6 +185,9 @@ pub(crate) fn spirv(module: &naga::Module, info: &ModuleInfo) -> Result<Vec<u32>
         // Welkin's own loops end; a counter in each would cost time. Out-of-bounds access is left to the device's
         // robust access, which the host turns on.
         force_loop_bounding: false,
+        // Passes write all that a workgroup shares before they read it. naga would fill it with zeros, one invocation all of
+        // it: drivers write that out store by store, and took longer to compile it than the rest of the pass.
+        zero_initialize_workgroup_memory: spv::ZeroInitializeWorkgroupMemoryMode::None,
         binding_map: identity_bindings(module),
         ..spv::Options::default()
     };

@@ -232,3 +232,25 @@ fn sources_of_a_directory_are_read_anew() {
     assert!(error.contains(&format!("{}/pass.wgsl:20:", directory.display())), "{error}");
     mended.unwrap();
 }
+
+#[test]
+fn what_a_workgroup_shares_is_not_filled_with_zeros() {
+    let text = "var<workgroup> field: array<vec4<f32>, 8>;\n@group(0) @binding(0) var<storage, read_write> sum: vec4<f32>;\n\
+                @compute @workgroup_size(8) fn main(@builtin(local_invocation_index) i: u32) {\n\
+                field[i] = vec4<f32>(1.0); workgroupBarrier(); sum = field[7u - i]; }";
+    let sources = Sources::default().with("pass.wgsl", text);
+    let shader = Shader::from_sources(&sources, "pass", &Definitions::new()).unwrap();
+    // Instructions follow five words of header: a first word's low half is the operation, its high half the words that it takes.
+    let count = |spirv: &[u32], operation: u32| {
+        let mut rest = &spirv[5..];
+        let mut count = 0;
+        while let Some(&word) = rest.first() {
+            count += usize::from(word & 0xffff == operation);
+            rest = &rest[(word >> 16) as usize..];
+        }
+        count
+    };
+    let (constant_null, control_barrier) = (46, 224);
+    assert_eq!(count(&shader.spirv, control_barrier), 1, "a barrier behind zeros would be another");
+    assert_eq!(count(&shader.spirv, constant_null), 0);
+}

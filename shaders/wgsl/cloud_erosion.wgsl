@@ -17,8 +17,12 @@ fn erosion(texel: vec3<i32>) -> f32 {
 @compute @workgroup_size(4, 4, 4)
 fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     let at = vec3<i32>(texel);
-    let quad = vec4<f32>(
-        erosion(at), erosion(at + vec3<i32>(1, 0, 0)), erosion(at + vec3<i32>(0, 1, 0)), erosion(at + vec3<i32>(1, 1, 0))
-    );
+    // One after the other, of a number that no compiler foresees, which would write the noise out four times: welkin::loops.
+    let neighbour_count = min(4u, textureDimensions(cloud_erosion_volume).x);
+    var quad: vec4<f32>;
+    for (var i = 0u; i < neighbour_count; i++) {
+        let value = erosion(at + vec3<i32>(vec3<u32>(i & 1u, i >> 1u, 0u)));
+        quad = select(quad, vec4<f32>(value), vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(i));
+    }
     textureStore(cloud_erosion_volume, texel, quad);
 }

@@ -13,6 +13,7 @@
 #import welkin::cloud_field::{cloud_layers, layer_density, CLOUD_LAYER_COUNT, CLOUD_LAYER_SLOTS}
 #import welkin::cloud_grid::{cell_m, grid_sample, level_of, local_direction, Part}
 #import welkin::cloud_matter::{cloud_matter, CloudMatter}
+#import welkin::loops::counted
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::ordinates_light::scattered_light
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
@@ -94,7 +95,7 @@ fn depth_to_light(sample: Sample, light: u32) -> f32 {
     let toward = local_direction(sample.map, observer.lights[light].direction);
     let near_m = select(0.0, NEAR_CELLS * cell_m(level_of(sample.map)), NEAR_SAMPLES > 0u);
     var near = 0.0;
-    for (var i = 0u; i < NEAR_SAMPLES; i++) {
+    for (var i = 0u; i < counted(NEAR_SAMPLES); i++) {
         let edges = vec2<f32>(f32(i), f32(i + 1u)) / f32(NEAR_SAMPLES);
         let from_to_m = near_m * edges * edges;
         let t_m = 0.5 * (from_to_m.x + from_to_m.y);

@@ -10,8 +10,13 @@
 const WEATHER_TEXELS: i32 = 512;
 const CURL_TEXELS: i32 = 128;
 
+// A number of octaves that no compiler foresees, which would write all of them out: see welkin::loops.
+fn counted(octaves: u32) -> u32 {
+    return min(octaves, textureDimensions(cloud_weather_map).x);
+}
+
 fn smooth_noise(texel: vec3<i32>, cells: i32, octaves: u32, seed: u32) -> i32 {
-    return smooth_octaves(position_of(texel, cells, WEATHER_TEXELS), cells, octaves, seed);
+    return smooth_octaves(position_of(texel, cells, WEATHER_TEXELS), cells, counted(octaves), seed);
 }
 
 fn weather(texel: vec3<i32>) -> vec4<f32> {
@@ -28,7 +33,7 @@ fn weather(texel: vec3<i32>) -> vec4<f32> {
 
 fn potential(x: i32, y: i32) -> i32 {
     let texel = vec3<i32>(vec2<i32>(x, y) & vec2<i32>(CURL_TEXELS - 1), 0);
-    return perlin_octaves(position_of(texel, 8, CURL_TEXELS), 8, 3u, 51u);
+    return perlin_octaves(position_of(texel, 8, CURL_TEXELS), 8, counted(3u), 51u);
 }
 
 fn flow(x: i32, y: i32) -> vec2<f32> {

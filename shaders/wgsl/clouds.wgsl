@@ -160,13 +160,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var air = clear_air();
     var march: March;
     march.boundary_m = next_crossing_m(&ray, 0.0);
-    while sum.clouds < OPAQUE && find_cloud(&march, &ray, offset, sum.clouds) {
+    loop {
+        let is_found = sum.clouds < OPAQUE && find_cloud(&march, &ray, offset, sum.clouds);
         pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), march.t_m);
+        if !is_found {
+            break;
+        }
         add_light(&sum, &march, &ray, &phase, &air);
         march.t_m += march.step_m;
         pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), march.t_m);
     }
-    pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), march.t_m);
     var ground = vec2<f32>(1.0);
     if ray.end_m < NEVER_M {
         pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), ray.end_m);

@@ -1,7 +1,8 @@
 // Pass: light of one order more, from the field of the order before; spherical-harmonic source iteration.
 //
-// Adds what it finds to the sum of all orders. The last pass (definition CLOSE_SERIES) adds the rest of the series:
-// from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric.
+// Adds what it finds to the sum of all orders. The last dispatch, whose own order nobody reads, adds the rest of the series:
+// from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric. It is the same shader,
+// as drivers would compile another for as long again: that it is the last it knows by `order`, which is smaller than `sum` then.
 
 #import welkin::atmosphere::atmosphere
 #import welkin::directions::{direction_of, field, irradiance, keep_ring_sums, project, DIRECTION_COUNT, INVOCATION_COUNT}
@@ -12,12 +13,10 @@
 
 @group(0) @binding(6) var previous_order: texture_2d_array<f32>;
 @group(0) @binding(7) var previous_sum: texture_2d_array<f32>;
-#ifndef CLOSE_SERIES
 #ifdef HALF_TABLES
 @group(0) @binding(8) var order: texture_storage_2d_array<rgba16float, write>;
 #else
 @group(0) @binding(8) var order: texture_storage_2d_array<rgba32float, write>;
-#endif
 #endif
 #ifdef HALF_TABLES
 @group(0) @binding(9) var sum: texture_storage_2d_array<rgba16float, write>;
@@ -30,13 +29,15 @@ const DARK: f32 = 1e-30;
 // The largest ratio between orders that the tail believes.
 const MAX_RATIO: f32 = 0.9;
 
+// Whether no order comes after this one.
+fn closes_series() -> bool {
+    return textureDimensions(order).x < textureDimensions(sum).x;
+}
+
 // The whole series from this order on, relative to this order.
 fn remainder(this_order: vec3<f32>, order_before: vec3<f32>) -> vec3<f32> {
-#ifdef CLOSE_SERIES
-    return 1.0 / (1.0 - clamp(this_order / max(order_before, vec3<f32>(DARK)), vec3<f32>(0.0), vec3<f32>(MAX_RATIO)));
-#else
-    return vec3<f32>(1.0);
-#endif
+    let ratio = clamp(this_order / max(order_before, vec3<f32>(DARK)), vec3<f32>(0.0), vec3<f32>(MAX_RATIO));
+    return select(vec3<f32>(1.0), 1.0 / (1.0 - ratio), closes_series());
 }
 
 // What is kept of this order and of the sum with it.
@@ -84,9 +85,9 @@ fn main(@builtin(workgroup_id) texel: vec3<u32>, @builtin(local_invocation_index
             let total = mean_sum_before * sum_before + coefficient * rest;
             kept = Kept(coefficient / mean, total / (mean_sum_before + mean * rest));
         }
-#ifndef CLOSE_SERIES
-        textureStore(order, texel.xy, layer, vec4<f32>(kept.order, 0.0));
-#endif
+        if !closes_series() {
+            textureStore(order, texel.xy, layer, vec4<f32>(kept.order, 0.0));
+        }
         textureStore(sum, texel.xy, layer, vec4<f32>(kept.sum, 0.0));
     }
 }

@@ -1,7 +1,8 @@
 // Pass: the source function of one order more, from that of the order before; source iteration.
 //
-// Adds what it finds to the sum of all orders. The last pass (definition CLOSE_SERIES) adds the rest of the series:
-// from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric.
+// Adds what it finds to the sum of all orders. The last dispatch, whose own order nobody reads, adds the rest of the series:
+// from the third order on, successive orders shrink by a constant ratio, so that the rest is geometric. It is the same shader,
+// as drivers would compile another for as long again: that it is the last it knows by `order`, which is smaller than `sum` then.
 
 #import welkin::atmosphere::atmosphere
 #import welkin::convolution::{
@@ -18,12 +19,10 @@ const INVOCATION_COUNT: u32 = #{GRID_INVOCATION_COUNT}u;
 
 @group(0) @binding(6) var previous_order: texture_2d_array<f32>;
 @group(0) @binding(7) var previous_sum: texture_2d_array<f32>;
-#ifndef CLOSE_SERIES
 #ifdef HALF_TABLES
 @group(0) @binding(8) var order: texture_storage_2d_array<rgba16float, write>;
 #else
 @group(0) @binding(8) var order: texture_storage_2d_array<rgba32float, write>;
-#endif
 #endif
 #ifdef HALF_TABLES
 @group(0) @binding(9) var sum: texture_storage_2d_array<rgba16float, write>;
@@ -36,24 +35,26 @@ const DARK: f32 = 1e-30;
 // The largest ratio between orders that the tail believes.
 const MAX_RATIO: f32 = 0.9;
 
+// Whether no order comes after this one.
+fn closes_series() -> bool {
+    return textureDimensions(order).x < textureDimensions(sum).x;
+}
+
 // The whole series from this order on, relative to this order. The ratio of orders is that of means over directions:
 // in single directions it is not yet constant where haze scatters forward and light comes round slowly.
 fn remainder(place: vec2<u32>) -> vec3<f32> {
-#ifdef CLOSE_SERIES
     let before = exp(textureLoad(previous_order, moment_texel(MEAN_TILE, place), 0, 0).rgb);
     let ratio = mean_of_field() / max(before, vec3<f32>(DARK));
-    return 1.0 / (1.0 - clamp(ratio, vec3<f32>(0.0), vec3<f32>(MAX_RATIO)));
-#else
-    return vec3<f32>(1.0);
-#endif
+    let series = 1.0 / (1.0 - clamp(ratio, vec3<f32>(0.0), vec3<f32>(MAX_RATIO)));
+    return select(vec3<f32>(1.0), series, closes_series());
 }
 
 // Adds a positive quantity of this order, kept as its logarithm.
 fn add(texel: vec2<u32>, layer: u32, value_or_dark: vec3<f32>, rest: vec3<f32>) {
     let value = max(value_or_dark, vec3<f32>(DARK));
-#ifndef CLOSE_SERIES
-    textureStore(order, texel, layer, vec4<f32>(log(value), 0.0));
-#endif
+    if !closes_series() {
+        textureStore(order, texel, layer, vec4<f32>(log(value), 0.0));
+    }
     let total = exp(textureLoad(previous_sum, texel, layer, 0).rgb) + value * rest;
     textureStore(sum, texel, layer, vec4<f32>(log(total), 0.0));
 }

@@ -59,7 +59,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let texel_m = box.cell_m / f32(REFINEMENT);
     var points: array<f32, 8>;
     var sum = 0.0;
-    for (var i = 0u; i < 8u; i++) {
+    // A number that no compiler foresees, which would write the clouds' density out eight times: see welkin::loops.
+    let point_count = 8u + u32(texel_m.x < 0.0);
+    for (var i = 0u; i < point_count; i++) {
         let corner = vec3<f32>(vec3<u32>(i, i >> 1u, i >> 2u) & vec3<u32>(1u));
         points[i] = similar_extinction(box.lowest_m + (vec3<f32>(id) + 0.25 + 0.5 * corner) * texel_m);
         sum += points[i];

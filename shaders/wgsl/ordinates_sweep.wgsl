@@ -79,11 +79,11 @@ fn through(face: Face, omega: vec3<f32>) -> vec2<f32> {
     return face.rise + vec2<f32>(face.beam * dot(omega, ordinates.toward_sun), 0.0);
 }
 
-// The next level's field at a place; it holds every place in and next to this level.
-fn coarser_radiance(level: u32, place_m: vec3<f32>, direction: u32) -> vec2<f32> {
+// Where the next level keeps its field at a place; it holds every place in and next to this level.
+fn coarser_slot(level: u32, place_m: vec3<f32>, direction: u32) -> u32 {
     let box = ordinates.levels[level + 1u];
     let cell = min(vec3<u32>(cells_from_corner(place_m, level + 1u)), box.size - 1u);
-    return ordinates_radiance[slot(box, direction, cell)];
+    return slot(box, direction, cell);
 }
 
 // Light of the ground in clear air around the clouds.
@@ -128,39 +128,54 @@ fn neighbour_of(box: Level, place: vec3<i32>) -> Neighbour {
     return Neighbour(vec3<u32>(cell), all(cell >= vec3<i32>(0)) && all(cell < size));
 }
 
-// Light that enters a cell along a direction from where there is no neighbour.
-fn from_outside(box: Level, cell: vec3<u32>, place: vec3<i32>, octant: u32, direction: u32) -> vec2<f32> {
-    if place.z < 0 {
-        return ground_radiance(box, cell);
-    }
-    if place.z >= i32(box.size.z) {
-        return vec2<f32>(0.0, 1.0);
-    }
-    if sweep.level + 1u < LEVEL_COUNT {
-        let place_m = box.lowest_m + (vec3<f32>(place) + 0.5) * box.cell_m;
-        return coarser_radiance(sweep.level, place_m, direction);
-    }
-    return select(vec2<f32>(0.0, 1.0), clear_ground(), octant >= 4u);
+// Where light comes from that enters a cell through a face, for all directions at once.
+struct Upwind {
+    // From a cell, of this level or the next: its first slot, and how far apart those of its directions are.
+    is_cell: bool,
+    first_slot: u32,
+    stride: u32,
+    // Of the next level nothing but the cell's own light.
+    face: Face,
+    // From outside of all levels: light that rises. The sky's falls.
+    rising: vec2<f32>,
 }
 
-// What enters a cell through its six faces; of those along an axis the lower one first.
+// What is upwind of a cell through the lower or the higher face along an axis.
+fn upwind_of(box: Level, cell: vec3<u32>, axis: u32, is_high: bool) -> Upwind {
+    var place = vec3<i32>(cell);
+    place[axis] += select(-1, 1, is_high);
+    var upwind: Upwind;
+    let neighbour = neighbour_of(box, place);
+    if neighbour.exists {
+        upwind.is_cell = true;
+        upwind.first_slot = slot(box, 0u, neighbour.cell);
+        upwind.stride = cell_count(box);
+        // The lower neighbour's light comes through its high face.
+        upwind.face = face(box, neighbour.cell, axis, !is_high);
+    } else if axis == 2u && !is_high && cell.z == 0u {
+        upwind.rising = ground_radiance(box, cell);
+    } else if place.z < i32(box.size.z) {
+        if sweep.level + 1u < LEVEL_COUNT {
+            let place_m = box.lowest_m + (vec3<f32>(place) + 0.5) * box.cell_m;
+            upwind.is_cell = true;
+            upwind.first_slot = coarser_slot(sweep.level, place_m, 0u);
+            upwind.stride = cell_count(ordinates.levels[sweep.level + 1u]);
+        }
+        upwind.rising = clear_ground();
+    }
+    return upwind;
+}
+
+// What is upwind through a cell's six faces; of those along an axis the lower one first.
 struct Inflow {
-    cells: array<Neighbour, 6>,
-    faces: array<Face, 6>,
+    faces: array<Upwind, 6>,
 }
 
 fn inflow_of(box: Level, cell: vec3<u32>) -> Inflow {
     var inflow: Inflow;
     for (var axis = 0u; axis < 3u; axis++) {
         for (var side = 0u; side < 2u; side++) {
-            var place = vec3<i32>(cell);
-            place[axis] += i32(side) * 2 - 1;
-            let neighbour = neighbour_of(box, place);
-            inflow.cells[2u * axis + side] = neighbour;
-            if neighbour.exists {
-                // The lower neighbour's light comes through its high face.
-                inflow.faces[2u * axis + side] = face(box, neighbour.cell, axis, side == 0u);
-            }
+            inflow.faces[2u * axis + side] = upwind_of(box, cell, axis, side == 1u);
         }
     }
     return inflow;
@@ -171,7 +186,7 @@ fn start(box: Level, cell: vec3<u32>) {
     for (var direction = 0u; direction < DIRECTION_COUNT; direction++) {
         var guess = vec2<f32>(0.0);
         if sweep.level + 1u < LEVEL_COUNT {
-            guess = coarser_radiance(sweep.level, place_m, direction);
+            guess = ordinates_radiance[coarser_slot(sweep.level, place_m, direction)];
         }
         ordinates_radiance[slot(box, direction, cell)] = guess;
     }
@@ -181,20 +196,16 @@ fn start(box: Level, cell: vec3<u32>) {
 }
 
 // Light that enters a cell along a direction through the faces that it meets, times |w_a| / h_a.
-fn entering(
-    box: Level, cell: vec3<u32>, inflow: ptr<function, Inflow>, octant: u32, direction: u32, along: vec3<f32>, omega: vec3<f32>
-) -> vec2<f32> {
+fn entering(inflow: ptr<function, Inflow>, octant: u32, direction: u32, along: vec3<f32>, omega: vec3<f32>) -> vec2<f32> {
     var light = vec2<f32>(0.0);
     for (var axis = 0u; axis < 3u; axis++) {
-        let is_falling = omega[axis] < 0.0;
-        let i = 2u * axis + select(0u, 1u, is_falling);
-        if (*inflow).cells[i].exists {
-            let upwind = ordinates_radiance[slot(box, direction, (*inflow).cells[i].cell)];
-            light += along[axis] * (upwind + through((*inflow).faces[i], omega));
+        let upwind = (*inflow).faces[2u * axis + select(0u, 1u, omega[axis] < 0.0)];
+        if upwind.is_cell {
+            let radiance = ordinates_radiance[upwind.first_slot + direction * upwind.stride];
+            light += along[axis] * (radiance + through(upwind.face, omega));
         } else {
-            var place = vec3<i32>(cell);
-            place[axis] += select(-1, 1, is_falling);
-            light += along[axis] * from_outside(box, cell, place, octant, direction);
+            // The first four octants go down.
+            light += along[axis] * select(vec2<f32>(0.0, 1.0), upwind.rising, octant >= 4u);
         }
     }
     return light;
@@ -227,7 +238,7 @@ fn relax(box: Level, cell: vec3<u32>) {
             let along = ring_components(ring) / box.cell_m;
             let omega = signs * ring_components(ring);
             let towards = dot(omega, toward_sun);
-            var light = entering(box, cell, &inflow, octant, direction, along, omega);
+            var light = entering(&inflow, octant, direction, along, omega);
             light.x += matter.y - dot((1.0 - shown) * dipole, omega) - towards * dot(along, leaving);
             light /= along.x + along.y + along.z + extinction;
             gathered[direction] = light;

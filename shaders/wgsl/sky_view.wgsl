@@ -7,14 +7,15 @@
 //
 // Definitions: FANS (an invocation fills FAN_COUNT columns, whose rays pass the same air; else one).
 
-#import welkin::atmosphere::SCATTERER_COUNT
+#import welkin::atmosphere::{SCATTERER_COUNT, SCATTERER_SLOTS}
 #import welkin::disc::{beam_count, beam_mu_s, beam_weight}
+#import welkin::loops::counted
 #import welkin::mapping
 #import welkin::march::{air_length_m, cut_at_shadow, is_cut_by_shadow, table_altitude_m, view_ray, AirRay}
 #import welkin::observer::{light_mu_s, observer}
 #import welkin::shade::{least_single, ln_lit_share, View}
 #import welkin::sky::{
-    layer_of, ln_mean_transmittance, LN_SCALE, multiple_scattering_table, MULTIPLE_LAYER, SINGLE_LAYER, SkyDirection,
+    layer_of, ln_mean_transmittance, LN_SCALE, multiple_scattering_table, SINGLE_LAYER, SkyDirection,
     view_optical_depth
 }
 #ifdef FANS
@@ -85,15 +86,23 @@ fn put(texel: vec2<u32>, view: mapping::ZenithAzimuth, half: Half, integrals: In
     ln_scale -= ln_mean_transmittance(half.light, direction);
 #endif
     let multiple = logarithm(sum.multiple * per_m) + ln_scale;
-    textureStore(sky_view_image, texel, first + MULTIPLE_LAYER, vec4<f32>(multiple, 0.0));
+    var single: array<vec3<f32>, SCATTERER_SLOTS>;
     let seen = View(half.altitude_m, view.zenith_rad, view.azimuth_rad, half.below_horizon);
     for (var c = 0u; c < SCATTERER_COUNT; c++) {
 #ifdef SHADE
         let tau = view_optical_depth(SkyDirection(view.zenith_rad, view.azimuth_rad, 0.0, half.below_horizon));
         sum.single[c] = max(sum.single[c], least_single(half.light, seen, c, tau));
 #endif
-        let single = logarithm(sum.single[c] * per_m) + ln_scale - ln_lit_share(half.light, seen, c);
-        textureStore(sky_view_image, texel, first + SINGLE_LAYER + c, vec4<f32>(single, 0.0));
+        single[c] = logarithm(sum.single[c] * per_m) + ln_scale - ln_lit_share(half.light, seen, c);
+    }
+    // One place that stores for all layers, and in `fill_fan` for all columns: drivers make much code of a store. What is stored
+    // is chosen and not indexed, of which they make as much.
+    for (var layer = 0u; layer < counted(SINGLE_LAYER + SCATTERER_COUNT); layer++) {
+        var value = multiple;
+        for (var c = 0u; c < SCATTERER_COUNT; c++) {
+            value = select(value, single[c], layer == SINGLE_LAYER + c);
+        }
+        textureStore(sky_view_image, texel, first + layer, vec4<f32>(value, 0.0));
     }
 }
 
@@ -129,11 +138,15 @@ fn fill_fan(first: vec2<u32>, half: Half, width: u32) {
             sums[k] = plus(sums[k], parts[k], beam_weight(half.light, beam));
         }
     }
-    for (var k = 0u; k < FAN_COUNT; k++) {
-        let texel = first + vec2<u32>(k, 0u);
-        if texel.x < width {
-            put(texel, view_of(texel, half), half, sums[k]);
+    for (var column = 0u; column < counted(min(FAN_COUNT, width - first.x)); column++) {
+        var sum = sums[0];
+        for (var k = 1u; k < FAN_COUNT; k++) {
+            if k == column {
+                sum = sums[k];
+            }
         }
+        let texel = first + vec2<u32>(column, 0u);
+        put(texel, view_of(texel, half), half, sum);
     }
 }
 #else

@@ -61,6 +61,16 @@ fn need(facts: &Facts) -> Need {
     Need::Needed(format!("exposure {} EV", facts.scene.display.exposure_ev))
 }
 
+pub(super) fn flags(recording: &Recording) -> Vec<&'static str> {
+    let mut flags = match recording.resources.screen {
+        ScreenEncoding::Srgb => Vec::new(),
+        ScreenEncoding::ExtendedLinear => vec!["HDR"],
+        ScreenEncoding::Hdr10 => vec!["HDR", "PQ"],
+    };
+    flags.extend((recording.facts.scene.display.tone_map == ToneMap::Filmic).then_some("FILMIC"));
+    flags
+}
+
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
     let scene = recording.facts.scene;
@@ -70,13 +80,7 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     };
     let Some(seen) = recording.resources.existing_image(seen).cloned() else { return Ok(()) };
     recording.insert_parameters("display", &DisplayBlock { to_srgb: padded_columns(to_srgb) });
-    let encoding = recording.resources.screen;
-    recording.resources.image("picture_image", shape, encoding.image_format())?;
-    let mut flags = match encoding {
-        ScreenEncoding::Srgb => Vec::new(),
-        ScreenEncoding::ExtendedLinear => vec!["HDR"],
-        ScreenEncoding::Hdr10 => vec!["HDR", "PQ"],
-    };
-    flags.extend((scene.display.tone_map == ToneMap::Filmic).then_some("FILMIC"));
-    recording.dispatch(NAME, &flags, &[("radiance_image", &seen)], Work::Invocations(shape.extent()))
+    let format = recording.resources.screen.image_format();
+    recording.resources.image("picture_image", shape, format)?;
+    recording.dispatch(NAME, &flags(recording), &[("radiance_image", &seen)], Work::Invocations(shape.extent()))
 }

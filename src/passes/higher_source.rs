@@ -1,6 +1,7 @@
 //! The source function of the second and all later orders, one order after the other, and the sum of all.
 
 use super::first_source::{inputs, need, shape, work};
+use super::multiple_scattering::no_order;
 use super::{Pass, Recording, RenderError, table_format};
 use crate::plan::Declaration;
 
@@ -32,6 +33,7 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
         (order, sum) = (next, next_sum);
     }
     let table = recording.resources.image("multiple_scattering_table", shape, format)?;
-    let images = [("previous_order", &order), ("previous_sum", &sum), ("sum", &table)];
-    recording.dispatch(NAME, &["CLOSE_SERIES"], &images, work(recording.facts))
+    let none = recording.resources.gpu.image("no_order", no_order(shape), format)?;
+    let images = [("previous_order", &order), ("previous_sum", &sum), ("order", &none), ("sum", &table)];
+    recording.dispatch(NAME, &[], &images, work(recording.facts))
 }

@@ -46,16 +46,24 @@ fn need(facts: &Facts) -> Need {
     }
 }
 
+/// A processor reads a cell's corners once for all of its pixels. A GPU wants more invocations than that, and neighbours that write
+/// side by side.
+fn whole_cells(recording: &Recording) -> bool {
+    recording.resources.gpu.info().kind == DeviceKind::Cpu
+}
+
+pub(super) fn flags(recording: &Recording) -> Vec<&'static str> {
+    whole_cells(recording).then_some("WHOLE_CELLS").into_iter().collect()
+}
+
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let Ok(cell) = lattice_cell(recording.facts) else { return Ok(()) };
     let images = compose::images(recording)?;
     let surface: Vec<_> = images.surface.iter().map(|image| ("surface_image", image)).collect();
     let list = recording.resources.buffer("exact_cells", list_bytes(recording.facts, cell))?;
     recording.clear(&list);
-    // A processor reads a cell's corners once for all of its pixels. A GPU wants more invocations than that, and neighbours
-    // that write side by side.
-    let whole_cells = recording.resources.gpu.info().kind == DeviceKind::Cpu;
-    let (columns, flags): (_, &[&str]) = if whole_cells { (cell, &["WHOLE_CELLS"]) } else { (1, &[]) };
+    let columns = if whole_cells(recording) { cell } else { 1 };
     let [width, height, _] = images.shape.extent();
-    recording.dispatch(NAME, flags, &surface, Work::Invocations([width.div_ceil(columns), height.div_ceil(cell), 1]))
+    let work = Work::Invocations([width.div_ceil(columns), height.div_ceil(cell), 1]);
+    recording.dispatch(NAME, &flags(recording), &surface, work)
 }

@@ -1,7 +1,17 @@
 //! When the passes that compute multiply scattered light are needed: those of one treatment at a time.
 
+use crate::gpu::ImageShape;
 use crate::plan::{Facts, Need, Treatment};
 use crate::probe::Orders;
+
+/// The shape of what is bound where the last order of light, which nobody reads, would go: by its size the shaders know that they
+/// are to close the series. Sides are powers of two, and layers several, where those of the table are: llvmpipe would else compile
+/// the shader again.
+pub(super) fn no_order(table: ImageShape) -> ImageShape {
+    let [width, height, _] = table.extent();
+    let side = |of_table: u32| if of_table.is_power_of_two() { 1 } else { 3 };
+    ImageShape::D2Array(side(width), side(height), table.layers().min(2))
+}
 
 /// Whether a scene calls for multiply scattered light, and by this treatment.
 pub(super) fn need(facts: &Facts, treatment: Treatment) -> Need {

@@ -6,6 +6,9 @@ use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
 const NAME: &str = "optical_depth";
 
+/// Layers have optical depths in closed form, and kinks that no table could hold.
+pub(super) const FLAGS: [&str; 1] = ["OMIT_LAYERS"];
+
 /// The pass.
 pub const PASS: Pass = Pass {
     declaration: Declaration {
@@ -47,5 +50,5 @@ fn need(facts: &Facts) -> Need {
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
     recording.resources.image("optical_depth_table", shape, table_format(recording.facts))?;
-    recording.dispatch(NAME, &["OMIT_LAYERS"], &[], Work::Invocations(shape.extent()))
+    recording.dispatch(NAME, &FLAGS, &[], Work::Invocations(shape.extent()))
 }

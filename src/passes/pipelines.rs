@@ -1,6 +1,9 @@
 //! Pipelines that are compiled, and for how long they are kept.
 
 use std::collections::{BTreeMap, HashMap};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Instant;
 
 use welkin_shaders::{Definitions, ShaderError};
 
@@ -27,7 +30,7 @@ struct Kept<P> {
     pipeline: P,
     /// All definitions of the frame that had it compiled: other shaders may mention others of them.
     asked: Definitions,
-    /// The last recording that asked for it.
+    /// The last recording that asked for it; 0 where none has yet.
     used: u64,
 }
 
@@ -71,6 +74,57 @@ impl<P: Clone> Pipelines<P> {
         let (asked, used) = (definitions.clone(), self.recording);
         self.kept.insert(key, Kept { pipeline: pipeline.clone(), asked, used });
         Ok(pipeline)
+    }
+
+    /// Compiles those of some pipelines that are not kept, as many at once as there are cores. What does not compile is left to
+    /// [`Pipelines::get`], which says why.
+    pub fn compile_ahead<E>(
+        &mut self,
+        shaders: &ShaderSources,
+        expected: &[(&'static str, Definitions)],
+        compile: impl Fn(&'static str, &Definitions) -> Result<P, E> + Sync,
+    ) where
+        P: Send,
+    {
+        let mut missing: Vec<((&'static str, Definitions), &Definitions)> = Vec::new();
+        for (pass, asked) in expected {
+            let Ok(relevant) = self.relevant(shaders, pass, asked) else { continue };
+            let key = (*pass, relevant);
+            if !self.kept.contains_key(&key) && missing.iter().all(|(other, _)| *other != key) {
+                missing.push((key, asked));
+            }
+        }
+        let threads = thread::available_parallelism().map_or(1, usize::from).min(missing.len());
+        if threads < 2 {
+            return;
+        }
+        let start = Instant::now();
+        let next = AtomicUsize::new(0);
+        let work = || {
+            let mut done = Vec::new();
+            while let Some(((pass, relevant), asked)) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if let Ok(pipeline) = compile(pass, relevant) {
+                    done.push(((*pass, relevant.clone()), Kept { pipeline, asked: (*asked).clone(), used: 0 }));
+                }
+            }
+            done
+        };
+        let compiled: Vec<_> = thread::scope(|scope| {
+            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+            let joined = |worker: thread::ScopedJoinHandle<'_, _>| {
+                worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+            };
+            workers.into_iter().flat_map(joined).collect()
+        });
+        let (count, milliseconds) = (compiled.len(), 1e3 * start.elapsed().as_secs_f64());
+        tracing::debug!("{count} pipelines compiled by {threads} threads in {milliseconds:.0} ms");
+        self.compiled += compiled.len() as u64;
+        self.kept.extend(compiled);
+    }
+
+    /// How many of the kept ones were compiled ahead and never asked for.
+    pub fn idle(&self) -> usize {
+        self.kept.values().filter(|kept| kept.used == 0).count()
     }
 
     /// The same pipelines from other shaders.
@@ -128,6 +182,46 @@ mod tests {
         let shaders = ShaderSources::embedded();
         pipelines.get(&shaders, "compose", &definitions, compile).unwrap();
         compiled
+    }
+
+    fn numbered(number: u32) -> (&'static str, Definitions) {
+        ("compose", Definitions::from([("LIGHT_COUNT".to_owned(), Definition::U32(number))]))
+    }
+
+    #[test]
+    fn what_is_compiled_ahead_is_compiled_once_and_not_again() {
+        let mut pipelines = Pipelines::default();
+        pipelines.begin_recording();
+        assert!(asks(&mut pipelines, "LIGHT_COUNT", 3));
+        let times = AtomicUsize::new(0);
+        let compile = |_: &str, definitions: &Definitions| -> Result<u32, ShaderError> {
+            times.fetch_add(1, Ordering::Relaxed);
+            let Some(Definition::U32(number)) = definitions.get("LIGHT_COUNT") else { panic!("it is relevant") };
+            Ok(*number)
+        };
+        // One is kept already, and one is expected twice.
+        let expected: Vec<_> = (0..20).chain([7]).map(numbered).collect();
+        pipelines.compile_ahead(&ShaderSources::embedded(), &expected, compile);
+        // With one core nothing is.
+        let ahead = if thread::available_parallelism().map_or(1, usize::from) > 1 { 19 } else { 0 };
+        assert_eq!((times.into_inner(), pipelines.compiled, pipelines.idle()), (ahead, 1 + ahead as u64, ahead));
+        for number in 0..20 {
+            assert_eq!(asks(&mut pipelines, "LIGHT_COUNT", number), ahead == 0 && number != 3, "{number}");
+        }
+        assert_eq!(pipelines.idle(), 0);
+    }
+
+    #[test]
+    fn what_does_not_compile_ahead_is_left_to_who_asks_for_it() {
+        let mut pipelines = Pipelines::<u32>::default();
+        pipelines.begin_recording();
+        let error = || ShaderError::NoEntryPoint { file: "compose.wgsl".to_owned() };
+        let expected: Vec<_> = (0..4).map(numbered).collect();
+        pipelines.compile_ahead(&ShaderSources::embedded(), &expected, |_, _| Err(error()));
+        assert_eq!((pipelines.compiled, pipelines.idle()), (0, 0));
+        let (pass, definitions) = &expected[0];
+        let asked = pipelines.get(&ShaderSources::embedded(), pass, definitions, |_| Err::<u32, _>(error()));
+        assert_eq!(asked.unwrap_err().to_string(), error().to_string());
     }
 
     #[test]

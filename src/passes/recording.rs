@@ -10,7 +10,10 @@ use super::blocks::{
     local_light_blocks, observer_block, volume_blocks, volume_samples, volume_terms,
 };
 use super::display::pre_exposure;
-use super::{HostFrame, HostLeft, RenderError, Resources, definitions, ordinates};
+use super::{
+    HostFrame, HostLeft, Pass, RenderError, Resources, definitions, display, interpolate, optical_depth, ordinates,
+    sky_view,
+};
 use crate::gpu::{Commands, Completed, GpuBuffer, GpuImage, Resource, Work};
 use crate::plan::Facts;
 
@@ -94,6 +97,19 @@ impl<'a> Recording<'a> {
         self.parameters.insert(name, block);
     }
 
+    /// Compiles what passes are expected to dispatch.
+    pub fn compile_ahead<'b>(&mut self, passes: impl Iterator<Item = &'b Pass>) {
+        let names = passes.map(|pass| pass.declaration.name);
+        let expected: Vec<_> = names.filter_map(|name| Some((name, self.with_flags(&flags(name, self)?)))).collect();
+        self.resources.compile_ahead(&expected);
+    }
+
+    fn with_flags(&self, flags: &[&str]) -> Definitions {
+        let mut definitions = self.definitions.clone();
+        definitions.extend(flags.iter().map(|flag| ((*flag).to_owned(), Definition::Bool(true))));
+        definitions
+    }
+
     /// Records a dispatch of a pass's shader.
     ///
     /// `images` binds variables that have no lasting name; all others are found by theirs.
@@ -104,8 +120,7 @@ impl<'a> Recording<'a> {
         images: &[(&str, &GpuImage)],
         work: Work,
     ) -> Result<(), RenderError> {
-        let mut definitions = self.definitions.clone();
-        definitions.extend(flags.iter().map(|flag| ((*flag).to_owned(), Definition::Bool(true))));
+        let definitions = self.with_flags(flags);
         dispatch(self.resources, &mut self.commands, pass, definitions, &self.parameters, images, work)
     }
 
@@ -141,6 +156,27 @@ impl<'a> Recording<'a> {
         };
         resources.finish_uploads();
         Ok(completed)
+    }
+}
+
+/// What a pass's shader is compiled with besides the frame's definitions. None of passes that dispatch several shaders, or that choose
+/// only when they are recorded: those are compiled then.
+fn flags(pass: &str, recording: &Recording) -> Option<Vec<&'static str>> {
+    match pass {
+        "optical_depth" => Some(optical_depth::FLAGS.to_vec()),
+        "sky_view" => Some(sky_view::flags(recording)),
+        "interpolate" => Some(interpolate::flags(recording)),
+        "display" => Some(display::flags(recording)),
+        "emission_order"
+        | "view_emission"
+        | "aerial_optical_depth"
+        | "cloud_gaps"
+        | "ordinates_extinction"
+        | "ordinates_sweep"
+        | "colour"
+        | "host_surface"
+        | "host_colour" => None,
+        _ => Some(Vec::new()),
     }
 }
 

@@ -237,6 +237,18 @@ impl Resources {
         pipelines.get(shaders, pass, definitions, compile)
     }
 
+    /// Compiles the pipelines of passes with their definitions, side by side, where they are not kept from before.
+    pub fn compile_ahead(&mut self, expected: &[(&'static str, Definitions)]) {
+        let Self { gpu, shaders, parameter_buffers, pipelines, .. } = self;
+        let compile = |pass: &str, relevant: &Definitions| compile(gpu, shaders, pass, relevant, *parameter_buffers);
+        pipelines.compile_ahead(shaders, expected, compile);
+    }
+
+    /// How many pipelines were compiled ahead and never asked for.
+    pub fn idle_pipelines(&self) -> usize {
+        self.pipelines.idle()
+    }
+
     /// How many pipelines have been compiled so far.
     pub fn compiled_pipelines(&self) -> u64 {
         self.pipelines.compiled

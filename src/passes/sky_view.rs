@@ -73,14 +73,21 @@ pub(super) fn need(facts: &Facts) -> Need {
     Need::Needed(format!("{}{averaged}{left_out}", view_optical_depth::seen_from(facts)))
 }
 
+/// A GPU wants more invocations than it has columns; a processor wants less work.
+fn in_fans(recording: &Recording) -> bool {
+    recording.resources.gpu.info().kind == DeviceKind::Cpu
+}
+
+pub(super) fn flags(recording: &Recording) -> Vec<&'static str> {
+    in_fans(recording).then_some("FANS").into_iter().collect()
+}
+
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
     let [width, height, _] = shape.extent();
     let table = recording.resources.image("sky_view_table", shape, table_format(recording.facts))?;
     let halves = 2 * recording.facts.light_slots();
-    // A GPU wants more invocations than it has columns; a processor wants less work.
-    let in_fans = recording.resources.gpu.info().kind == DeviceKind::Cpu;
-    let (columns, flags): (_, &[&str]) = if in_fans { (FAN_COUNT, &["FANS"]) } else { (1, &[]) };
+    let columns = if in_fans(recording) { FAN_COUNT } else { 1 };
     let work = Work::Invocations([width.div_ceil(columns), height, halves]);
-    recording.dispatch(NAME, flags, &[("sky_view_image", &table)], work)
+    recording.dispatch(NAME, &flags(recording), &[("sky_view_image", &table)], work)
 }
