@@ -203,10 +203,10 @@ mod tests {
                 reduced_cosine,
                 backward,
                 is_even,
-                again,
-                first_block,
                 occluders_first,
                 occluder_count,
+                again,
+                first_block,
                 lamp_field
             ]
         );
