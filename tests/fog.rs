@@ -102,12 +102,12 @@ fn a_sunlit_bank_is_as_bright_as_the_path_tracer_finds_whatever_it_absorbs() {
         let radiance: Vec<_> = rendered.frame.radiance.iter().step_by(5).map(|pixel| f64::from(pixel[1])).collect();
         radiance.iter().sum::<f64>() / radiance.len() as f64
     });
-    for (ours, albedo) in means.zip([1.0, 0.6]) {
+    // Cells and nodes of tables err by 2 %. Of a step of 0.7 optical depths sunlight counts where it is in the middle: 3 % of the first order
+    // are lost by that, which is most of the light where matter absorbs.
+    for (ours, (albedo, bound)) in means.zip([(1.0, 0.02), (0.6, 0.05)]) {
         let off = |(truth, error): (f64, f64)| (ours / truth - 1.0).abs() - 3.0 * error / truth;
-        // Of a step of 0.7 optical depths sunlight counts where it is in the middle, by which 3 % of the first order are lost here; 2 % are
-        // left to cells and nodes of tables.
-        assert!(off(traced(albedo)) < 0.05, "albedo {albedo}: {ours} against {:?}", traced(albedo));
-        assert!(off(traced(albedo - 0.1)) > 0.05, "the control: another albedo is told apart");
+        assert!(off(traced(albedo)) < bound, "albedo {albedo}: {ours} against {:?}", traced(albedo));
+        assert!(off(traced(albedo - 0.1)) > bound, "the control: another albedo is told apart");
     }
 }
 

@@ -50,10 +50,7 @@ pub fn page(
                 .broken
                 .iter()
                 .chain(&found.missed)
-                .map(|words| {
-                    let why = case.known_miss.map_or(String::new(), |why| format!(" ({why})"));
-                    format!("- {}, {quality}: {words}{why}", case.name)
-                })
+                .map(|words| format!("- {}, {quality}: {words}", case.name))
                 .collect()
         };
         columns.iter().zip(qualities).flat_map(of).collect()

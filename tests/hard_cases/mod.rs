@@ -35,8 +35,6 @@ pub struct Case {
     pub is_quick: bool,
     /// Whether only the command renders it, as its shaders take long to compile or to run.
     pub is_long: bool,
-    /// Why its bound is known not to hold.
-    pub known_miss: Option<&'static str>,
 }
 
 /// What holds for a case's radiance besides the laws.
@@ -78,24 +76,11 @@ impl Case {
     /// A case by day with the qualities' own settings.
     fn new(name: impl Into<String>, edit: impl Into<String>) -> Self {
         let (name, edit) = (name.into(), edit.into());
-        Self {
-            name,
-            edit,
-            settings: |settings| settings,
-            bound: Bound::Day,
-            is_quick: false,
-            is_long: false,
-            known_miss: None,
-        }
+        Self { name, edit, settings: |settings| settings, bound: Bound::Day, is_quick: false, is_long: false }
     }
 
     fn bound(self, bound: Bound) -> Self {
         Self { bound, ..self }
-    }
-
-    /// Its bound is known not to hold, and why.
-    fn misses(self, why: &'static str) -> Self {
-        Self { known_miss: Some(why), ..self }
     }
 
     /// One of the few that the quick form holds to the path tracer.
