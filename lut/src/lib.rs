@@ -11,9 +11,11 @@
 pub mod bake;
 mod bands;
 pub mod cloud;
+pub mod forward_peak;
 pub mod geometry;
 pub mod height_field;
 pub mod lamp_field;
+mod legendre;
 pub mod mapping;
 mod medium;
 pub mod pack;

@@ -1,6 +1,6 @@
 //! Light in a slab: the tables against laws of energy and against walks that scatter as the phase function says.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -44,23 +44,27 @@ fn light_that_matter_and_ground_do_not_take_comes_back() {
     }
 }
 
-/// Mean radiance, and fluxes down and up, of diffuse light in the middle of a slab, with standard errors, by walks that start in
+/// Mean radiance, fluxes down, up and along of diffuse light in the middle of a slab, with standard errors, by walks that start in
 /// the beam.
-fn walked(matter: SlabMatter, mu: f64, above: f64, below: f64) -> [(f64, f64); 3] {
+fn walked(matter: SlabMatter, mu: f64, above: f64, below: f64) -> [(f64, f64); 4] {
     let mut random = Pcg64Mcg::seed_from_u64(11);
     let mut uniform = move || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
     let whole = above + below;
-    let mut sums = [(0.0, 0.0); 3];
+    let mut sums = [(0.0, 0.0); 4];
     for _ in 0..WALKS {
-        let (mut depth, mut cosine, mut weight, mut scattered) = (0.0, mu, 1.0, false);
-        let mut own = [0.0; 3];
+        // Of a direction the parts downwards and along the beam's azimuth, and across.
+        let mut direction = [mu, (1.0 - mu * mu).sqrt(), 0.0];
+        let (mut depth, mut weight, mut scattered) = (0.0, 1.0, false);
+        let mut own = [0.0; 4];
         while weight > 1e-3 {
-            let next = depth - (1.0 - uniform()).ln() * cosine;
+            let next = depth - (1.0 - uniform()).ln() * direction[0];
             let crosses = (depth < above) != (next < above);
             if crosses && scattered {
                 // A crossing counts 1 / |cosine| for the mean radiance over the sphere, 4 pi sr.
-                own[0] += weight / (4.0 * PI * f64::abs(cosine));
-                own[if cosine > 0.0 { 1 } else { 2 }] += weight;
+                let cosine = f64::abs(direction[0]);
+                own[0] += weight / (4.0 * PI * cosine);
+                own[if direction[0] > 0.0 { 1 } else { 2 }] += weight;
+                own[3] += weight * direction[1] / cosine;
             }
             depth = next;
             if depth < 0.0 {
@@ -68,15 +72,19 @@ fn walked(matter: SlabMatter, mu: f64, above: f64, below: f64) -> [(f64, f64); 3
             }
             if depth > whole {
                 (depth, weight, scattered) = (whole, weight * matter.ground_albedo, true);
-                cosine = -uniform().sqrt();
+                let (cosine, azimuth) = (uniform().sqrt(), TAU * uniform());
+                let sine = (1.0 - cosine * cosine).sqrt();
+                direction = [-cosine, sine * azimuth.cos(), sine * azimuth.sin()];
                 continue;
             }
             (weight, scattered) = (weight * matter.albedo, true);
-            // P(cosine) of two moments by rejection; the mean over azimuths is all that it has.
-            cosine = loop {
-                let trial = 2.0 * uniform() - 1.0;
-                let most = 1.0 + 3.0 * matter.mean_cosine.abs();
-                if uniform() * most < 1.0 + 3.0 * matter.mean_cosine * trial * cosine {
+            // P of two moments by rejection.
+            direction = loop {
+                let (cosine, azimuth) = (2.0 * uniform() - 1.0, TAU * uniform());
+                let sine = (1.0 - cosine * cosine).sqrt();
+                let trial = [cosine, sine * azimuth.cos(), sine * azimuth.sin()];
+                let turn: f64 = trial.iter().zip(direction).map(|(a, b)| a * b).sum();
+                if uniform() * (1.0 + 3.0 * matter.mean_cosine.abs()) < 1.0 + 3.0 * matter.mean_cosine * turn {
                     break trial;
                 }
             };
@@ -102,9 +110,9 @@ fn the_field_is_what_walks_find() {
         let other = at(&table, above + 1, below);
         let walks = walked(matter, mu, node_depth(above), node_depth(below));
         let misses = |field: SlabField| {
-            let ours = [field.mean_radiance, field.downward, field.upward];
-            // Grazing crossings make the mean's distribution long-tailed: 1 % besides three standard errors.
-            ours.iter().zip(walks).any(|(ours, (mean, error))| (ours - mean).abs() > 3.0 * error + 0.01 * mean)
+            let ours = [field.mean_radiance, field.downward, field.upward, field.along];
+            // Grazing crossings make distributions long-tailed: 1 % besides three standard errors.
+            ours.iter().zip(walks).any(|(ours, (mean, error))| (ours - mean).abs() > 3.0 * error + 0.01 * mean.abs())
         };
         assert!(!misses(found), "{matter:?}: {found:?} against {walks:?}");
         assert!(misses(other), "the control: another depth is told apart, {matter:?}: {other:?} against {walks:?}");

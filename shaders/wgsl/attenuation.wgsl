@@ -7,8 +7,9 @@ fn opacity(tau: vec3<f32>) -> vec3<f32> {
     return select(1.0 - exp(-tau), thin, tau < vec3<f32>(0.2));
 }
 
-// (1 - exp(-tau)) / tau, the mean of exp(-t) over t in [0, tau].
+// (1 - exp(-tau)) / tau, the mean of exp(-t) over t from 0 to tau, which may be negative.
 fn mean_transmittance(tau: vec3<f32>) -> vec3<f32> {
+    let is_thin = abs(tau) < vec3<f32>(1e-2);
     let thin = 1.0 - tau * (0.5 - tau / 6.0);
-    return select((1.0 - exp(-tau)) / max(tau, vec3<f32>(1e-3)), thin, tau < vec3<f32>(1e-2));
+    return select((1.0 - exp(-tau)) / select(tau, vec3<f32>(1.0), is_thin), thin, is_thin);
 }

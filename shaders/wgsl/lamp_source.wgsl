@@ -9,7 +9,7 @@
 #import welkin::lamp_grid::{near_share, tile_rad}
 #import welkin::local_light::{cone_share, depth_to_local_light, local_lights, scattered_cone_share}
 #import welkin::volume_field::{altitude_of, place_of, volumes}
-#import welkin::volume_source::{lamp_phase_per_sr, Piece, Stretch}
+#import welkin::volume_source::{phase_per_sr, Piece, Stretch}
 
 // Which share of a lamp's light is asked for: welkin::lamp_grid.
 const ALL: u32 = 0u;
@@ -72,7 +72,7 @@ fn from_local_light(light: u32, piece: Piece, stretch: Stretch, asked: u32) -> v
         let to_light = depth_to_local_light(light, place, toward, distance_m);
         let to_eye = stretch.before + stretch.within * ((t_m - stretch.from_m) / stretch.step_m);
         let cone = cone_share(light, -toward);
-        var scattered = cone * lamp_phase_per_sr(piece.index, nu) * exp(-to_light);
+        var scattered = cone * phase_per_sr(piece.index, nu) * exp(-to_light);
 #ifdef VOLUME_ORDERS
         let field = volumes[piece.index].lamp_field;
         let spread = spread_of_field(field, to_light);

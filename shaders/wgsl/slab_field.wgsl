@@ -10,8 +10,8 @@
 
 #import welkin::observer::LIGHT_COUNT
 
-// Bank by bank the lights' tables, then the sky's. In each, for depths above and depths below, which come faster: mean radiance and
-// net flux upwards; then for depths above alone the flux downwards on the ground.
+// Bank by bank the lights' tables, then the sky's. In each, for depths above and depths below, which come faster: mean radiance,
+// net flux upwards and along; then for depths above alone the flux downwards on the ground.
 @group(1) @binding(67) var<storage, read> slab_fields: array<vec4<f32>>;
 
 // welkin_lut::slab_field has the same numbers.
@@ -19,12 +19,15 @@ const DEPTHS: u32 = 24u;
 const NEAR_DEPTH: f32 = 0.05;
 // ln(1 + 60 / 0.05), from the first node to the last.
 const LOG_DEPTHS: f32 = 7.09090982;
-const TABLE: u32 = (2u * DEPTHS + 1u) * DEPTHS;
+const OF_PAIR: u32 = 3u;
+const TABLE: u32 = (OF_PAIR * DEPTHS + 1u) * DEPTHS;
 
 struct SlabLight {
     mean_radiance: vec3<f32>,
     // Net flux upwards.
     upward: vec3<f32>,
+    // Net flux along the layer, in the direction in which the beam goes.
+    along: vec3<f32>,
 }
 
 // Where a table is looked up: its nodes above and below, as whole and part.
@@ -48,24 +51,29 @@ fn slab_table(bank: u32, light: u32) -> u32 {
 
 fn between_below(first: u32, t: f32) -> SlabLight {
     return SlabLight(
-        mix(slab_fields[first].rgb, slab_fields[first + 2u].rgb, t),
-        mix(slab_fields[first + 1u].rgb, slab_fields[first + 3u].rgb, t),
+        mix(slab_fields[first].rgb, slab_fields[first + OF_PAIR].rgb, t),
+        mix(slab_fields[first + 1u].rgb, slab_fields[first + OF_PAIR + 1u].rgb, t),
+        mix(slab_fields[first + 2u].rgb, slab_fields[first + OF_PAIR + 2u].rgb, t),
     );
 }
 
 fn slab_light(table: u32, spot: SlabSpot) -> SlabLight {
     let above = min(u32(spot.above), DEPTHS - 2u);
     let below = min(u32(spot.below), DEPTHS - 2u);
-    let first = table + 2u * (above * DEPTHS + below);
+    let first = table + OF_PAIR * (above * DEPTHS + below);
     let near = between_below(first, spot.below - f32(below));
-    let far = between_below(first + 2u * DEPTHS, spot.below - f32(below));
+    let far = between_below(first + OF_PAIR * DEPTHS, spot.below - f32(below));
     let t = spot.above - f32(above);
-    return SlabLight(mix(near.mean_radiance, far.mean_radiance, t), mix(near.upward, far.upward, t));
+    return SlabLight(
+        mix(near.mean_radiance, far.mean_radiance, t),
+        mix(near.upward, far.upward, t),
+        mix(near.along, far.along, t),
+    );
 }
 
 // Diffuse flux downwards on the ground below a depth.
 fn slab_on_ground(table: u32, spot: SlabSpot) -> vec3<f32> {
     let above = min(u32(spot.above), DEPTHS - 2u);
-    let first = table + 2u * DEPTHS * DEPTHS + above;
+    let first = table + OF_PAIR * DEPTHS * DEPTHS + above;
     return mix(slab_fields[first].rgb, slab_fields[first + 1u].rgb, spot.above - f32(above));
 }

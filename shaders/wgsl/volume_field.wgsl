@@ -63,6 +63,8 @@ struct Volume {
     first_block: u32,
     // Its table of lamps' scattered light: welkin::lamp_field.
     lamp_field: u32,
+    // Its table of what its forward peak makes of a beam: welkin::beam_field.
+    beam_field: u32,
 }
 
 @group(1) @binding(40) var<storage, read> volumes: array<Volume>;

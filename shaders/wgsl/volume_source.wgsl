@@ -2,20 +2,24 @@
 // Light that matter in fog and local volumes sends towards the observer.
 //
 // Legend
-//   term      one summand of a light's part: P_k(nu) int b e^(-a_k (tau_light + tau_view)) ds. Bands of near-forward light as
-//             in welkin::cloud_source; a_k per band, as a coloured volume absorbs
+//   peak      what of the phase function rises above a ceiling: light that only peaks scatter stays in its beam, while its directions
+//             spread (welkin_lut::forward_peak). What is below turns light away
+//   similar   the medium in which peaks count as nothing: q times the optical depth
 //   stretch   what a step does to light: depth before it and in it, of all media
 //
-// Light scattered many times is that of an even slab in fog (welkin::slab_field); in a local volume what is scattered once
+// Light that is turned away twice or more is that of an even slab in fog (welkin::slab_field); in a local volume what is scattered once
 // escapes with the probability 1 / (1 + x), x its mean chord in optical depths (Wigner's rational approximation), or is
 // scattered again.
 //
 // Local lights are welkin::lamp_source.
 //
-// Definitions: VOLUME_TERM_COUNT, VOLUME_ORDERS (light scattered more than once belongs in the picture), LIT, LIGHT_COUNT.
+// Definitions: VOLUME_ORDERS (light scattered more than once belongs in the picture), LIT, LIGHT_COUNT.
 
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::attenuation::mean_transmittance
+#ifdef VOLUME_ORDERS
+#import welkin::beam_field::peak_again_per_sr
+#endif
 #import welkin::cloud_daylight::{light_in_air, surroundings, Surroundings}
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
@@ -24,21 +28,22 @@
 #import welkin::volume_field::{volumes, Place, FOG_COUNT}
 #import welkin::volume_grid::{block_uvw, spot_of}
 
-const TERM_COUNT: u32 = #{VOLUME_TERM_COUNT}u;
-const TERM_STRIDE: u32 = TERM_COUNT + 1u;
-const TERM_LOBES: u32 = 4u;
+const VOLUME_LOBES: u32 = 2u;
 const FOUR_PI: f32 = 12.5663706;
+// A lower sun counts as this high where depths to it change along a ray.
+const LOWEST_SUN: f32 = 0.02;
 
-struct VolumeTerm {
-    // a_k.
-    attenuation: vec3<f32>,
-    padding: f32,
-    // P_k; scales may be negative.
-    lobes: array<PhaseLobe, TERM_LOBES>,
+struct VolumePhase {
+    lobes: array<PhaseLobe, VOLUME_LOBES>,
+    // Where its forward peak begins.
+    ceiling_per_sr: f32,
+    padding_a: f32,
+    padding_b: f32,
+    padding_c: f32,
 }
 
-// Volume by volume: terms, then the phase function itself, of local lights.
-@group(1) @binding(47) var<storage, read> volume_terms: array<VolumeTerm>;
+// Volume by volume, and behind them the layers of clouds.
+@group(1) @binding(47) var<storage, read> volume_phases: array<VolumePhase>;
 @group(1) @binding(42) var volume_light_image: texture_3d<f32>;
 @group(1) @binding(43) var volume_sky_image: texture_3d<f32>;
 
@@ -60,22 +65,48 @@ struct Piece {
     place: Place,
 }
 
-fn term_per_sr(index: u32, term: u32, nu: f32) -> f32 {
+fn phase_per_sr(index: u32, nu: f32) -> f32 {
     var sum = 0.0;
-    for (var i = 0u; i < TERM_LOBES; i++) {
-        sum += lobe_per_sr(volume_terms[index * TERM_STRIDE + term].lobes[i], nu);
+    for (var i = 0u; i < VOLUME_LOBES; i++) {
+        sum += lobe_per_sr(volume_phases[index].lobes[i], clamp(nu, -1.0, 1.0));
     }
     return sum;
 }
 
-// The phase function itself.
-fn lamp_phase_per_sr(index: u32, nu: f32) -> f32 {
-    return term_per_sr(index, TERM_COUNT, clamp(nu, -1.0, 1.0));
+// Mean over a step of e^(-a tau), and of e^(-a tau - s (x - 1/2)) for what changes along it besides, x from 0 to 1.
+fn seen_changing(stretch: Stretch, attenuation: vec3<f32>, slope: vec3<f32>) -> vec3<f32> {
+    return exp(0.5 * slope - attenuation * stretch.before) * mean_transmittance(attenuation * stretch.within + slope);
 }
 
-// Mean of e^(-a tau) over a step.
 fn seen(stretch: Stretch, attenuation: vec3<f32>) -> vec3<f32> {
-    return exp(-attenuation * stretch.before) * mean_transmittance(attenuation * stretch.within);
+    return seen_changing(stretch, attenuation, vec3<f32>(0.0));
+}
+
+// How the depth to a light changes from the beginning of a step to its end: in even fog it falls as the ray climbs. Less than to
+// nothing it cannot. Elsewhere a step's point stands for all of it.
+fn change_to_light(piece: Piece, stretch: Stretch, up: vec3<f32>, mu_s: f32, to_light: vec3<f32>) -> vec3<f32> {
+    if piece.index >= FOG_COUNT || volumes[piece.index].noise_strength > 0.0 {
+        return vec3<f32>(0.0);
+    }
+    let climbs_m = dot(stretch.view, up) * stretch.step_m;
+    let change = volumes[piece.index].extinction_per_m * (piece.density * -climbs_m / max(mu_s, LOWEST_SUN));
+    return clamp(change, -2.0 * to_light, 2.0 * to_light);
+}
+
+// Radiance of a light's beam that matter scatters once, or turns away once, per irradiance, b and metre.
+fn from_beam(piece: Piece, stretch: Stretch, nu: f32, to_light: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
+    let phase = phase_per_sr(piece.index, nu);
+    let whole = vec3<f32>(1.0);
+#ifdef VOLUME_ORDERS
+    let q = volumes[piece.index].similar_extinction;
+    let turning = min(phase, volume_phases[piece.index].ceiling_per_sr);
+    let left = exp(-q * to_light);
+    let again = peak_again_per_sr(volumes[piece.index].beam_field, to_light, nu) * seen_changing(stretch, whole, q * change);
+    return left * (turning * seen_changing(stretch, q, q * change) + again)
+        + (phase - turning) * exp(-to_light) * seen_changing(stretch, whole, change);
+#else
+    return phase * exp(-to_light) * seen_changing(stretch, whole, change);
+#endif
 }
 
 // What media leave of the sky above and below a place in a local volume.
@@ -84,20 +115,33 @@ fn sky_share(depths: vec4<f32>) -> vec2<f32> {
 }
 
 #ifdef VOLUME_ORDERS
+// How directional lights and a view ray stand at a place: cosines of light and ray with the vertical, and of the ray with the light.
+struct Standing {
+    mu_s: f32,
+    mu_view: f32,
+    nu: f32,
+}
+
+// Cosine of a view ray with the horizontal direction of a light, times the sine of the ray.
+fn along_light(standing: Standing) -> f32 {
+    let sine = sqrt(max(1.0 - standing.mu_s * standing.mu_s, 0.0));
+    return (standing.nu - standing.mu_s * standing.mu_view) / max(sine, 1e-3);
+}
+
 // Radiance times b of light that a directional light and the sky have sent into a volume and that has been scattered since.
-fn diffuse_source(piece: Piece, light: u32, view: vec3<f32>, arriving: vec3<f32>, around: Surroundings, mu_s: f32, depths: vec4<f32>, beam: vec4<f32>) -> vec3<f32> {
+fn diffuse_source(piece: Piece, light: u32, standing: Standing, arriving: vec3<f32>, around: Surroundings, depths: vec4<f32>, beam: vec4<f32>) -> vec3<f32> {
     let volume = volumes[piece.index];
     if piece.index < FOG_COUNT {
         let spot = slab_spot(depths.x, depths.z);
         let of_beam = slab_light(slab_table(piece.index, light), spot);
         let of_sky = slab_light(slab_table(piece.index, LIGHT_COUNT), spot);
-        let beam_flux = max(mu_s, 0.0) * exp(-beam.a) * arriving;
+        let beam_flux = max(standing.mu_s, 0.0) * exp(-beam.a) * arriving;
         let sky_flux = PI * around.above;
         let mean = beam_flux * of_beam.mean_radiance + sky_flux * of_sky.mean_radiance;
         let upward = beam_flux * of_beam.upward + sky_flux * of_sky.upward;
         // Light goes on as it went: more of it comes from where the net flux comes from.
-        let forward = volume.reduced_cosine * 3.0 / FOUR_PI * upward * -view.z;
-        return max(mean + forward, vec3<f32>(0.0)) * volume.similarity;
+        let against = upward * -standing.mu_view + beam_flux * of_beam.along * along_light(standing);
+        return max(mean + volume.reduced_cosine * 3.0 / FOUR_PI * against, vec3<f32>(0.0)) * volume.similarity;
     }
     let mean_depth = dot(beam.rgb, vec3<f32>(1.0 / 3.0));
     let left = exp(-beam.a) / (1.0 + 0.75 * volume.backward * mean_depth);
@@ -119,14 +163,13 @@ fn from_lights(piece: Piece, stretch: Stretch) -> vec3<f32> {
         let mu_s = dot(up, observer.lights[light].direction);
         let arriving = light_in_air(light, piece.place.altitude_m, mu_s);
         let nu = clamp(dot(stretch.view, observer.lights[light].direction), -1.0, 1.0);
-        for (var k = 0u; k < TERM_COUNT; k++) {
-            let a = volume_terms[piece.index * TERM_STRIDE + k].attenuation;
-            radiance += term_per_sr(piece.index, k, nu) * arriving * exp(-a * beam.rgb - beam.a) * seen(stretch, a);
-        }
+        let change = change_to_light(piece, stretch, up, mu_s, beam.rgb);
+        radiance += arriving * exp(-beam.a) * from_beam(piece, stretch, nu, beam.rgb, change);
 #ifdef VOLUME_ORDERS
         let around = surroundings(piece.place.altitude_m, mu_s, observer.lights[light].irradiance);
         let q = volumes[piece.index].similar_extinction;
-        let source = diffuse_source(piece, light, stretch.view, arriving, around, mu_s, depths, beam);
+        let standing = Standing(mu_s, dot(stretch.view, up), nu);
+        let source = diffuse_source(piece, light, standing, arriving, around, depths, beam);
         radiance += source * seen(stretch, q);
         // Light from behind that is scattered by small angles only, over the albedo, by which scattering is the extinction's.
         let behind = select(around.below, around.above, dot(stretch.view, up) > 0.0);

@@ -3,9 +3,7 @@
 use welkin_lut::cloud::CloudKind;
 use welkin_shaders::{Definition, Definitions};
 
-use super::blocks::{
-    ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count, local_light_count, volume_term_count,
-};
+use super::blocks::{ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count, local_light_count};
 use super::{lamp_froxels, local_clusters, ordinates, sky_view, volume_light};
 use crate::plan::{CloudScattering, Facts, Surface, TableFormat, Treatment, lattice_cell};
 use crate::probe::Orders;
@@ -77,7 +75,6 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("VOLUME_COUNT", facts.volumes.len() as u32),
         ("FOG_COUNT", facts.fog_count()),
         ("LOCAL_LIGHT_COUNT", local_light_count(facts)),
-        ("VOLUME_TERM_COUNT", volume_term_count(facts)),
         ("VOLUME_CELLS", blocks.cells),
         ("VOLUME_COLUMNS", blocks.columns),
         ("VOLUME_ROWS", blocks.rows),

@@ -7,7 +7,7 @@ use welkin_shaders::{Definition, Definitions};
 use super::blocks::{
     CameraBlock, LocalLists, ZONAL_COUNT, atmosphere_block, cloud_frame_block, cloud_layers, cloud_matter, cloud_terms,
     cosine_nodes, emission_block, gauss_nodes, grid_nodes, height_field_block, lamps, legendre_moments,
-    local_light_blocks, observer_block, volume_blocks, volume_samples, volume_terms,
+    local_light_blocks, observer_block, volume_blocks, volume_phases, volume_samples,
 };
 use super::display::pre_exposure;
 use super::{
@@ -70,14 +70,14 @@ impl<'a> Recording<'a> {
         if facts.has_local_media() {
             let lamps = lamps(facts);
             let lists = LocalLists::new(facts, &lamps);
-            resources.lamp_fields.prepare(facts);
-            resources.fill_buffer("volumes", &volume_blocks(facts, &lists, &resources.lamp_fields))?;
-            resources.fill_buffer("volume_terms", &volume_terms(facts))?;
+            resources.angular_fields.prepare(facts);
+            resources.fill_buffer("volumes", &volume_blocks(facts, &lists, &resources.angular_fields))?;
+            resources.fill_buffer("volume_phases", &volume_phases(facts))?;
             resources.fill_buffer("volume_samples", &volume_samples(facts))?;
             resources.fill_buffer("local_lists", &lists.to_words())?;
             resources
-                .fill_buffer("local_lights", &local_light_blocks(facts, &lamps, &lists, &resources.lamp_fields))?;
-            resources.fill_buffer("lamp_fields", &resources.lamp_fields.to_texels())?;
+                .fill_buffer("local_lights", &local_light_blocks(facts, &lamps, &lists, &resources.angular_fields))?;
+            resources.fill_buffer("angular_fields", &resources.angular_fields.to_texels())?;
             let slab_fields = resources.slab_fields.to_texels(facts);
             resources.fill_buffer("slab_fields", &slab_fields)?;
         }

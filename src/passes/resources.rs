@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use welkin_shaders::{Definitions, ParameterBuffers, Shader};
 
-use super::blocks::{LampFields, SlabFields};
+use super::blocks::{AngularFields, SlabFields};
 use super::pipelines::Pipelines;
 use super::{HostRecording, RenderError, ShaderSources};
 use crate::gpu::{
@@ -40,7 +40,7 @@ pub struct Resources {
     /// What times are taken with; none for the best that the device has.
     pub clock: Option<Clock>,
     /// Light around lamps, of the kinds of matter that were seen last.
-    pub lamp_fields: LampFields,
+    pub angular_fields: AngularFields,
     /// Light scattered in fog, of the banks that were seen last.
     pub slab_fields: SlabFields,
     /// Images of the host's that a frame is drawn into, and what it does with them next.
@@ -104,7 +104,7 @@ impl Resources {
             pace: None,
             screen: ScreenEncoding::Srgb,
             clock: None,
-            lamp_fields: LampFields::default(),
+            angular_fields: AngularFields::default(),
             slab_fields: SlabFields::default(),
             targets: Vec::new(),
             host: None,

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::legendre;
 use crate::PhaseFunction;
+use crate::legendre::legendre;
 
 /// Angles at which integrals are taken.
 const ANGLES: usize = 4096;

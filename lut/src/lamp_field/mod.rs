@@ -23,6 +23,7 @@ mod spherical;
 use std::f64::consts::PI;
 
 use crate::PhaseFunction;
+use crate::legendre::legendre;
 
 /// Moments that are solved for.
 const SOLVED: usize = 8;
@@ -49,17 +50,6 @@ pub struct ScatteredFlux {
     pub outward: f64,
     /// r² times the integral of radiance over all directions, over its intensity.
     pub scalar: f64,
-}
-
-/// P_0 to P_{count-1} at a cosine.
-fn legendre(count: usize, cosine: f64) -> impl Iterator<Item = f64> {
-    let (mut before, mut value) = (0.0, 1.0);
-    (0..count).map(move |l| {
-        let here = value;
-        let l = l as f64;
-        (before, value) = (value, ((2.0 * l + 1.0) * cosine * value - l * before) / (l + 1.0));
-        here
-    })
 }
 
 impl LampField {

@@ -62,21 +62,35 @@ impl Matrix {
     }
 }
 
-/// Directions of a hemisphere by Gauss's rule, and how matter scatters between them.
+/// A part of radiance by azimuth φ from the beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Part {
+    /// Its mean.
+    Mean,
+    /// What goes as cos φ.
+    Cosine,
+}
+
+/// Directions of a hemisphere by Gauss's rule, and how matter scatters one part of radiance between them.
 #[derive(Debug, Clone)]
 pub struct Streams {
+    part: Part,
     cosines: Vector,
     weights: Vector,
     albedo: f64,
     mean_cosine: f64,
 }
 
+fn sine(cosine: f64) -> f64 {
+    (1.0 - cosine * cosine).sqrt()
+}
+
 impl Streams {
-    pub fn new(albedo: f64, mean_cosine: f64) -> Self {
+    pub fn new(part: Part, albedo: f64, mean_cosine: f64) -> Self {
         let nodes = gauss_legendre(STREAMS);
         let [cosines, weights] = [|node: &GaussNode| node.abscissa, |node: &GaussNode| node.weight]
             .map(|of| std::array::from_fn(|i| of(&nodes[i])));
-        Self { cosines, weights, albedo, mean_cosine }
+        Self { part, cosines, weights, albedo, mean_cosine }
     }
 
     /// Mean of radiances over the hemisphere.
@@ -89,10 +103,24 @@ impl Streams {
         TAU * (0..STREAMS).map(|i| self.cosines[i] * self.weights[i] * radiances[i]).sum::<f64>()
     }
 
-    /// Share of the light in a cosine that matter sends on into another's, per optical depth and steradian; the sign of the product
-    /// says whether both point to the same side.
-    fn scattered_per_sr(&self, product: f64) -> f64 {
-        self.albedo / (4.0 * PI) * (1.0 + 3.0 * self.mean_cosine * product)
+    /// Flux of the part that goes as cos φ through a vertical plane that faces the beam's azimuth, from one hemisphere.
+    pub fn flux_along(&self, radiances: &Vector) -> f64 {
+        PI * (0..STREAMS).map(|i| sine(self.cosines[i]) * self.weights[i] * radiances[i]).sum::<f64>()
+    }
+
+    /// Share of a beam with a cosine that matter sends on into another, per optical depth and steradian; on which side of it says the
+    /// sign.
+    fn from_beam_per_sr(&self, side: f64, to: f64, from: f64) -> f64 {
+        self.albedo / (4.0 * PI)
+            * match self.part {
+                Part::Mean => 1.0 + 3.0 * self.mean_cosine * side * to * from,
+                Part::Cosine => 3.0 * self.mean_cosine * sine(to) * sine(from),
+            }
+    }
+
+    /// The same of radiance that goes as the part does: the mean of cos² φ is a half.
+    fn scattered_per_sr(&self, side: f64, to: f64, from: f64) -> f64 {
+        self.from_beam_per_sr(side, to, from) * if self.part == Part::Mean { 1.0 } else { 0.5 }
     }
 
     /// How many times a layer that is thin enough is doubled, and its optical depth.
@@ -126,7 +154,7 @@ impl Layer {
     fn thin(streams: &Streams, depth: f64) -> Self {
         let cosines = &streams.cosines;
         let scattered = |side: f64, to: usize, from: usize| {
-            let per_sr = streams.scattered_per_sr(side * cosines[to] * cosines[from]);
+            let per_sr = streams.scattered_per_sr(side, cosines[to], cosines[from]);
             TAU * streams.weights[from] * per_sr * lost(depth, cosines[from]) * cosines[from] / cosines[to]
         };
         let straight = |to: usize, from: usize| if to == from { (-depth / cosines[to]).exp() } else { 0.0 };
@@ -157,7 +185,7 @@ pub fn source(streams: &Streams, depth: f64, mu: f64) -> Source {
     let of = |side: f64| {
         std::array::from_fn(|i| {
             let cosine = streams.cosines[i];
-            streams.scattered_per_sr(side * cosine * mu) * lost(thin, mu) / cosine
+            streams.from_beam_per_sr(side, cosine, mu) * lost(thin, mu) / cosine
         })
     };
     let mut layer = Layer::thin(streams, thin);

@@ -8,7 +8,7 @@ use welkin_lut::cloud::CloudLayer;
 use welkin_lut::volume::{Volume, VolumeField, VolumeForm, VolumeParameters};
 use welkin_lut::{BAND_COUNT, Bands};
 
-use super::lamp_fields::{LampFields, NO_FIELD};
+use super::angular_fields::{AngularFields, NO_FIELD};
 use super::local_lists::LocalLists;
 use super::vec3;
 use super::volumes::mean_chord_m;
@@ -196,7 +196,7 @@ fn reach_m(neighbour_m: f64, around: &Surroundings, share: f64) -> f64 {
 }
 
 impl LocalLightBlock {
-    fn new(facts: &Facts, lamp: &Lamp, fields: &LampFields, list: std::ops::Range<usize>) -> Self {
+    fn new(facts: &Facts, lamp: &Lamp, fields: &AngularFields, list: std::ops::Range<usize>) -> Self {
         let around = surroundings(facts, lamp.position_m);
         let (axis, inner, outer) = match lamp.cone {
             Some(cone) => (cone.axis.to_vector(), cone.inner_cosine, cone.outer_cosine),
@@ -214,7 +214,7 @@ impl LocalLightBlock {
             solid_share: solid_share as f32,
             core_reach_m: lamp.core_reach_m as f32,
             field: match (around.densest, clouds_around(facts, lamp.position_m)) {
-                (Some(index), _) => fields.of_volume(facts.volumes[index]),
+                (Some(index), _) => fields.around_lamp(facts.volumes[index]),
                 (None, Some(layer)) => fields.of_clouds(layer),
                 (None, None) => NO_FIELD,
             },
@@ -234,7 +234,7 @@ pub fn local_light_blocks(
     facts: &Facts,
     lamps: &[Lamp],
     lists: &LocalLists,
-    fields: &LampFields,
+    fields: &AngularFields,
 ) -> Vec<LocalLightBlock> {
     let numbered = lamps.iter().enumerate();
     let mut blocks: Vec<_> =

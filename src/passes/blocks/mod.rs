@@ -1,11 +1,11 @@
 //! Parameter blocks: what the shaders read of a scene, laid out as they declare it. The one place where f64 becomes f32.
 
+mod angular_fields;
 mod atmosphere;
 mod camera;
 mod cloud_frame;
 mod clouds;
 mod emission;
-mod lamp_fields;
 mod local_lights;
 mod local_lists;
 mod observer;
@@ -14,19 +14,19 @@ mod slab_fields;
 mod terrain;
 mod volumes;
 
+pub use angular_fields::AngularFields;
 pub use atmosphere::{atmosphere_block, legendre_moments, lobe_count};
 pub use camera::CameraBlock;
 pub use cloud_frame::cloud_frame_block;
 pub use clouds::{cloud_layers, cloud_matter, cloud_term_count, cloud_terms};
 pub use emission::{ZONAL_COUNT, emission_block, emission_breakpoints_m};
-pub use lamp_fields::LampFields;
 pub use local_lights::{lamps, local_light_blocks, local_light_count};
 pub use local_lists::LocalLists;
 pub use observer::observer_block;
 pub use quadrature::{GaussNodeBlock, cosine_nodes, gauss_nodes, grid_nodes};
 pub use slab_fields::SlabFields;
 pub use terrain::height_field_block;
-pub use volumes::{volume_blocks, volume_samples, volume_term_count, volume_terms};
+pub use volumes::{volume_blocks, volume_phases, volume_samples};
 
 use welkin_lut::Bands;
 
@@ -44,7 +44,7 @@ mod tests {
     use super::local_lights::LocalLightBlock;
     use super::observer::{DirectionalLightBlock, ObserverHeader, SkyViewRangeBlock};
     use super::terrain::{HeightFieldHeader, OctaveBlock};
-    use super::volumes::{VolumeBlock, VolumeTermBlock};
+    use super::volumes::{VolumeBlock, VolumePhaseBlock};
     use super::*;
     use crate::passes::definitions;
     use crate::plan::{Facts, Outputs, Quality, Settings};
@@ -207,12 +207,13 @@ mod tests {
                 occluder_count,
                 again,
                 first_block,
-                lamp_field
+                lamp_field,
+                beam_field
             ]
         );
         assert_eq!(size(&media, "Volume"), size_of::<VolumeBlock>());
-        assert_layout!(media, "VolumeTerm", VolumeTermBlock, [attenuation, lobes]);
-        assert_eq!(size(&media, "VolumeTerm"), size_of::<VolumeTermBlock>());
+        assert_layout!(media, "VolumePhase", VolumePhaseBlock, [lobes, ceiling_per_sr]);
+        assert_eq!(size(&media, "VolumePhase"), size_of::<VolumePhaseBlock>());
         assert_layout!(
             media,
             "LocalLight",

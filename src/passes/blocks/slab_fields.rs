@@ -1,11 +1,11 @@
 //! Light that fog scatters again and again, as tables for the shaders: for each bank one for each light and one for the sky.
 
+use welkin_lut::forward_peak::mean_cosine_of_rest;
 use welkin_lut::slab_field::{DEPTHS, SlabField, SlabLight, SlabMatter, Slabs};
 use welkin_lut::volume::Volume;
 use welkin_lut::{BAND_COUNT, Bands};
 
 use super::volumes::Similar;
-use crate::passes::ordinates::coefficients::reduced_cosine;
 use crate::plan::Facts;
 
 /// Cosines of a light's elevation for which tables are solved, from [`LOWEST`] to 1; between them they are interpolated.
@@ -13,8 +13,10 @@ const COSINES: usize = 12;
 /// A lower light counts as this high.
 const LOWEST: f64 = 0.02;
 
-/// Texels of a table: at each pair of depths mean radiance and net flux upwards, then the flux downwards on the ground below each depth.
-const TABLE_TEXELS: usize = (2 * DEPTHS + 1) * DEPTHS;
+/// Texels of a pair of depths: mean radiance, net flux upwards and along.
+const OF_PAIR: usize = 3;
+/// Texels of a table: those of all pairs of depths, then the flux downwards on the ground below each depth.
+const TABLE_TEXELS: usize = (OF_PAIR * DEPTHS + 1) * DEPTHS;
 
 type Texels = Vec<[f32; 4]>;
 
@@ -36,7 +38,7 @@ struct Bank {
 pub struct SlabFields(Vec<Bank>);
 
 fn matter(fog: &Volume, ground_albedo: Bands) -> Matter {
-    let (similar, mean_cosine) = (Similar::new(fog), reduced_cosine(&fog.phase));
+    let (similar, mean_cosine) = (Similar::new(fog), mean_cosine_of_rest(&fog.phase));
     Matter(std::array::from_fn(|band| SlabMatter {
         albedo: similar.albedo[band],
         mean_cosine,
@@ -68,11 +70,12 @@ impl Bank {
             let same = self.matter.0[..band].iter().position(|other| *other == self.matter.0[band]);
             let table = same.map_or_else(|| slabs.table(light), |other| tables[other].clone());
             for (pair, field) in table.iter().enumerate() {
-                texels[2 * pair][band] = field.mean_radiance as f32;
-                texels[2 * pair + 1][band] = (field.upward - field.downward) as f32;
+                let values = [field.mean_radiance, field.upward - field.downward, field.along];
+                let own = &mut texels[OF_PAIR * pair..][..OF_PAIR];
+                own.iter_mut().zip(values).for_each(|(texel, value)| texel[band] = value as f32);
             }
             for above in 0..DEPTHS {
-                texels[2 * DEPTHS * DEPTHS + above][band] = table[above * DEPTHS].downward as f32;
+                texels[OF_PAIR * DEPTHS * DEPTHS + above][band] = table[above * DEPTHS].downward as f32;
             }
             tables.push(table);
         }

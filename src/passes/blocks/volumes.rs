@@ -1,19 +1,18 @@
 //! Fog and local volumes as the shaders read them.
 
 use bytemuck::{Pod, Zeroable};
-use welkin_lut::cloud::CloudLayer;
+use welkin_lut::forward_peak::{self, ForwardPeak};
 use welkin_lut::volume::{Volume, VolumeForm, VolumeParameters};
-use welkin_lut::{BAND_COUNT, Bands, PhaseFunction};
+use welkin_lut::{Bands, PhaseFunction};
 
+use super::angular_fields::AngularFields;
 use super::atmosphere::{PhaseLobeBlock, scaled_lobes};
-use super::lamp_fields::LampFields;
 use super::local_lists::LocalLists;
 use super::vec3;
-use crate::passes::ordinates::coefficients::{BAND_ASYMMETRY, band_attenuations, forward_share, reduced_cosine};
-use crate::plan::{CloudScattering, Facts};
+use crate::plan::Facts;
 
-/// Lobes that a term has room for: WGSL `TERM_LOBES`.
-const TERM_LOBES: usize = 4;
+/// Lobes that a phase function has room for: WGSL `VOLUME_LOBES`.
+const VOLUME_LOBES: usize = 2;
 
 /// WGSL `Volume`.
 #[repr(C)]
@@ -47,16 +46,17 @@ pub struct VolumeBlock {
     pub(super) again: [f32; 3],
     pub(super) first_block: u32,
     pub(super) lamp_field: u32,
-    pub(super) padding: [u32; 3],
+    pub(super) beam_field: u32,
+    pub(super) padding: [u32; 2],
 }
 
-/// WGSL `VolumeTerm`.
+/// WGSL `VolumePhase`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct VolumeTermBlock {
-    pub(super) attenuation: [f32; 3],
-    pub(super) padding: f32,
-    pub(super) lobes: [PhaseLobeBlock; TERM_LOBES],
+pub struct VolumePhaseBlock {
+    pub(super) lobes: [PhaseLobeBlock; VOLUME_LOBES],
+    pub(super) ceiling_per_sr: f32,
+    pub(super) padding: [f32; 3],
 }
 
 /// Mean chord of a local form, 4 V / S (Cauchy), m; that of an ellipsoid for the sphere of its volume.
@@ -66,6 +66,14 @@ pub(super) fn mean_chord_m(form: &VolumeForm) -> f64 {
         VolumeForm::Ellipsoid { size_m: [x, y, z], .. } => 2.0 / 3.0 * (x * y * z).cbrt(),
         VolumeForm::Fog { .. } => 0.0,
     }
+}
+
+/// Single-scattering albedo; 0 where there is nothing.
+pub(super) fn albedo(volume: &Volume) -> Bands {
+    let extinction = volume.extinction_per_m();
+    std::array::from_fn(
+        |band| if extinction[band] > 0.0 { volume.scattering_per_m[band] / extinction[band] } else { 0.0 },
+    )
 }
 
 /// The medium without the scattering that hardly turns light from its line (Joseph, Wiscombe & Weinman 1976).
@@ -78,11 +86,9 @@ pub(super) struct Similar {
 
 impl Similar {
     pub(super) fn new(volume: &Volume) -> Self {
-        let forward = forward_share(&volume.phase);
-        let whole = volume.extinction_per_m();
-        let albedo = |band: usize| if whole[band] > 0.0 { volume.scattering_per_m[band] / whole[band] } else { 0.0 };
-        let extinction: Bands = std::array::from_fn(|band| 1.0 - forward * albedo(band));
-        Self { extinction, albedo: std::array::from_fn(|band| (1.0 - forward) * albedo(band) / extinction[band]) }
+        let (forward, albedo) = (forward_peak::share(&volume.phase), albedo(volume));
+        let extinction = albedo.map(|albedo| 1.0 - forward * albedo);
+        Self { extinction, albedo: std::array::from_fn(|band| (1.0 - forward) * albedo[band] / extinction[band]) }
     }
 }
 
@@ -97,7 +103,7 @@ fn again(volume: &Volume, similar: &Similar) -> Bands {
 }
 
 impl VolumeBlock {
-    fn new(facts: &Facts, index: usize, lists: &LocalLists, fields: &LampFields, grid_first: u32) -> Self {
+    fn new(facts: &Facts, index: usize, lists: &LocalLists, fields: &AngularFields, grid_first: u32) -> Self {
         let volume = facts.volumes[index];
         let p = VolumeParameters::new(volume, facts.scene.time_s);
         let similar = Similar::new(volume);
@@ -127,24 +133,25 @@ impl VolumeBlock {
             grid_size: volume.grid.as_ref().map_or([0; 3], |grid| grid.size().map(|n| n as u32)),
             grid_first,
             similar_extinction: vec3(similar.extinction),
-            similarity: (1.0 - forward_share(&volume.phase)) as f32,
+            similarity: (1.0 - forward_peak::share(&volume.phase)) as f32,
             similar_albedo: vec3(similar.albedo),
-            reduced_cosine: reduced_cosine(&volume.phase) as f32,
+            reduced_cosine: forward_peak::mean_cosine_of_rest(&volume.phase) as f32,
             backward: (1.0 - volume.phase.mean_cosine()) as f32,
             is_even: u32::from(is_even),
             again: vec3(again(volume, &similar)),
             first_block: first_block as u32,
             occluders_first: occluders.start as u32,
             occluder_count: occluders.len() as u32,
-            lamp_field: fields.of_volume(volume),
-            padding: [0; 3],
+            lamp_field: fields.around_lamp(volume),
+            beam_field: fields.in_beam(volume),
+            padding: [0; 2],
         }
     }
 }
 
 /// WGSL `array<Volume>`, with one that is nothing where there is none. Behind the volumes stand the layers of clouds, of which only
 /// the table of lamps' light is filled in: to a lamp they are one more kind of matter.
-pub fn volume_blocks(facts: &Facts, lists: &LocalLists, fields: &LampFields) -> Vec<VolumeBlock> {
+pub fn volume_blocks(facts: &Facts, lists: &LocalLists, fields: &AngularFields) -> Vec<VolumeBlock> {
     let mut first = 0;
     let mut blocks = Vec::with_capacity(facts.volumes.len().max(1));
     for (index, volume) in facts.volumes.iter().enumerate() {
@@ -165,50 +172,23 @@ pub fn volume_samples(facts: &Facts) -> Vec<f32> {
     samples
 }
 
-impl VolumeTermBlock {
-    fn new(attenuation: Bands, phase: &PhaseFunction, parts: &[(f64, f64)]) -> Self {
-        let mut lobes = [PhaseLobeBlock::ABSENT; TERM_LOBES];
-        let given = parts.iter().flat_map(|&(strength, factor)| {
-            scaled_lobes(phase, factor).into_iter().map(move |lobe| lobe.times(strength))
-        });
-        lobes.iter_mut().zip(given).for_each(|(slot, lobe)| *slot = lobe);
-        Self { attenuation: vec3(attenuation), padding: 0.0, lobes }
+impl VolumePhaseBlock {
+    fn new(phase: &PhaseFunction) -> Self {
+        let mut lobes = [PhaseLobeBlock::ABSENT; VOLUME_LOBES];
+        lobes.iter_mut().zip(scaled_lobes(phase, 1.0)).for_each(|(slot, lobe)| *slot = lobe);
+        // The shaders' least of two numbers knows no infinity.
+        let ceiling = ForwardPeak::new(phase).ceiling_per_sr().min(f64::from(f32::MAX));
+        Self { lobes, ceiling_per_sr: ceiling as f32, padding: [0.0; 3] }
     }
 }
 
-/// Terms of each volume: the light that was scattered once, or two bands of near-forward light as in clouds.
-pub fn volume_term_count(facts: &Facts) -> u32 {
-    if facts.cloud_scattering() == CloudScattering::Single { 1 } else { 2 }
-}
-
-/// WGSL `array<VolumeTerm>`: volume by volume, and after the terms of each its phase function, with which it scatters light of lamps;
-/// behind them layers of clouds, of which only that is asked.
-pub fn volume_terms(facts: &Facts) -> Vec<VolumeTermBlock> {
-    let terms = |volume: &Volume| {
-        let phase = if volume.scatters() { &volume.phase } else { &PhaseFunction::Isotropic };
-        let once = VolumeTermBlock::new([1.0; BAND_COUNT], phase, &[(1.0, 1.0)]);
-        if volume_term_count(facts) == 1 {
-            return vec![once; 2];
-        }
-        let extinction = volume.extinction_per_m();
-        let by_band: [[f64; 2]; BAND_COUNT] = std::array::from_fn(|band| {
-            let albedo = if extinction[band] > 0.0 { volume.scattering_per_m[band] / extinction[band] } else { 0.0 };
-            band_attenuations(phase, albedo)
-        });
-        vec![
-            VolumeTermBlock::new(by_band.map(|[sharp, _]| sharp), phase, &[(1.0, 1.0), (-1.0, BAND_ASYMMETRY)]),
-            VolumeTermBlock::new(by_band.map(|[_, wide]| wide), phase, &[(1.0, BAND_ASYMMETRY)]),
-            once,
-        ]
+/// WGSL `array<VolumePhase>`: of each volume, and behind them of layers of clouds, for light of lamps.
+pub fn volume_phases(facts: &Facts) -> Vec<VolumePhaseBlock> {
+    let of_volume = |volume: &Volume| {
+        VolumePhaseBlock::new(if volume.scatters() { &volume.phase } else { &PhaseFunction::Isotropic })
     };
-    let of_clouds = |layer: &CloudLayer| {
-        vec![
-            VolumeTermBlock::new([1.0; BAND_COUNT], &layer.phase, &[(1.0, 1.0)]);
-            volume_term_count(facts) as usize + 1
-        ]
-    };
-    let volumes = facts.volumes.iter().flat_map(|volume| terms(volume));
-    let mut all: Vec<_> = volumes.chain(facts.clouds.iter().flat_map(|layer| of_clouds(layer))).collect();
-    all.resize(all.len().max(1), VolumeTermBlock::zeroed());
+    let volumes = facts.volumes.iter().map(|volume| of_volume(volume));
+    let mut all: Vec<_> = volumes.chain(facts.clouds.iter().map(|layer| VolumePhaseBlock::new(&layer.phase))).collect();
+    all.resize(all.len().max(1), VolumePhaseBlock::zeroed());
     all
 }

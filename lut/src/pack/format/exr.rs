@@ -2,6 +2,7 @@
 
 use std::io::Cursor;
 
+use ::exr::compression::Compression;
 use ::exr::meta::MetaData;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels, ReadLayers,
@@ -45,9 +46,17 @@ pub(super) fn encode(table: &Table, precision: Precision) -> Result<Vec<u8>, Str
 /// The most that deflate makes of a byte.
 const MOST_INFLATED: u64 = 1032;
 
-/// Refuses a picture of another size before there is memory for it.
-fn check_size(bytes: &[u8], expected: (usize, usize)) -> Result<(), String> {
+/// Refuses a picture of another size before there is memory for it, and compression that packs do not have: of some the crate's decoders
+/// end the program on damaged data.
+fn check_header(bytes: &[u8], expected: (usize, usize)) -> Result<(), String> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| error.to_string())?;
+    let expected_compression = [Compression::Uncompressed, Compression::ZIP1, Compression::ZIP16];
+    if let Some(other) = meta.headers.iter().find(|header| !expected_compression.contains(&header.compression)) {
+        return Err(format!(
+            "it is compressed with {}; a pack's pictures are with ZIP or not at all",
+            other.compression
+        ));
+    }
     let other = meta.headers.iter().map(|header| header.layer_size).find(|size| (size.x(), size.y()) != expected);
     if let Some(size) = other {
         return Err(format!("it is of {size:?} pixels; the atlas of the table has {expected:?}"));
@@ -61,8 +70,10 @@ fn check_size(bytes: &[u8], expected: (usize, usize)) -> Result<(), String> {
 pub(super) fn decode(bytes: &[u8], size: [u32; 3], precision: Precision) -> Result<Table, String> {
     let [columns, rows] = atlas(size);
     let expected = (size[0] as usize * columns as usize, size[1] as usize * rows as usize);
-    check_size(bytes, expected)?;
+    check_header(bytes, expected)?;
     let reader = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes();
+    // A thread of the crate's that ends by a panic ends the program.
+    let reader = reader.non_parallel();
     let image = reader.from_buffered(Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let layer = image.layer_data;
     let channel = |name: &str| {
@@ -86,4 +97,37 @@ pub(super) fn decode(bytes: &[u8], size: [u32; 3], precision: Precision) -> Resu
     };
     let texels = (0..width * height * depth).map(texel).collect();
     Ok(Table::new(size, texels))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_damaged_file_is_refused_or_read_and_nothing_else() {
+        let table = Table::new([2, 2, 2], vec![[0.5; 3]; 8]);
+        let whole = encode(&table, Precision::F16).unwrap();
+        let read = |bytes: &[u8]| decode(bytes, [2, 2, 2], Precision::F16);
+        assert!(read(&whole).unwrap() == table);
+        for at in 0..whole.len() {
+            for byte in [0, 1, 127, 255] {
+                let mut damaged = whole.clone();
+                damaged[at] = byte;
+                let _ = read(&damaged);
+            }
+        }
+    }
+
+    #[test]
+    fn compression_that_no_pack_has_is_refused() {
+        // Its decoder in the crate subtracted more than there was (found by fuzzing).
+        const B44: u8 = 6;
+        let mut bytes = encode(&Table::new([2, 2, 2], vec![[0.5; 3]; 8]), Precision::F16).unwrap();
+        let name = b"compression\0compression\0\x01\0\0\0";
+        let at = bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len();
+        assert_eq!(bytes[at], 3, "written with ZIP16");
+        bytes[at] = B44;
+        let refusal = decode(&bytes, [2, 2, 2], Precision::F16).unwrap_err();
+        assert!(refusal.contains("a pack's pictures are with ZIP"), "{refusal}");
+    }
 }
