@@ -17,7 +17,8 @@
 #import welkin::cluster::{cluster_of, slice_of}
 #import welkin::cluster_members::{media_of, next_member, NONE}
 #import welkin::media_between::{between, next_boundary_m, Between}
-#import welkin::media_ground::{fog_share, ground_lit_by_lamps, volume_share}
+#import welkin::fog_daylight::fog_share
+#import welkin::media_ground::{ground_lit_by_lamps, volume_share}
 #import welkin::media_march::{
     altitude_m, clear_air, follow_air, growth_behind, leave_air, left_on_surface, observer_position, pass_air, place_in_step,
     position_m, ray_of, rise_at, through_air, Air, Ray, NEVER_M, OPAQUE,

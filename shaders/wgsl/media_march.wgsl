@@ -18,11 +18,10 @@
 #import welkin::cloud_noise::hash
 #import welkin::geometry
 #import welkin::observer::observer
-#ifdef CLOUDS
 #import welkin::tables::optical_depth_to_top
-#endif
 #import welkin::volume_field::FOG_COUNT
 #if FOG_COUNT > 0
+#import welkin::fog_daylight::air_above_fog
 #import welkin::volume_field::volumes
 #endif
 
@@ -150,6 +149,10 @@ struct Air {
 #ifdef CLOUDS
     clear: ClearFluxes,
 #endif
+#if FOG_COUNT > 0
+    // Share of its diffuse light above the fog.
+    above_fog: vec3<f32>,
+#endif
 }
 
 fn clear_air() -> Air {
@@ -160,7 +163,27 @@ fn clear_air() -> Air {
 #ifdef CLOUDS
     air.clear = clear_fluxes(cloud_layers[0].base_m, observer.lights[0].direction.z);
 #endif
+#if FOG_COUNT > 0
+    air.above_fog = air_above_fog();
+#endif
     return air;
+}
+
+// The light that air at a place scatters, over that in clear air: of the beam, and diffuse light.
+fn add_air(air: ptr<function, Air>, map: vec2<f32>, altitude: f32, share: vec3<f32>) {
+    var diffuse = share;
+#if FOG_COUNT > 0
+    if altitude >= volumes[0].top_m {
+        diffuse *= (*air).above_fog;
+    }
+#endif
+#ifdef CLOUDS
+    (*air).beam += straight_left(0u, map, altitude) * share;
+    (*air).diffuse += diffuse_share(cover_at(map, altitude), (*air).clear) * diffuse;
+#else
+    (*air).beam += share;
+    (*air).diffuse += diffuse;
+#endif
 }
 
 // Steps through air, whose light changes where shadows of clouds lie, m; longer in the distance.
@@ -189,14 +212,7 @@ fn follow_air(air: ptr<function, Air>, ray: ptr<function, Ray>) {
         let own = step_m * (*air).extinction_per_m;
         let share = media * exp(-(*air).depth) * opacity(own);
         (*air).depth += own;
-#ifdef CLOUDS
-        let map = to_map(atmosphere.radius_m, position_m(ray, middle_m));
-        (*air).beam += straight_left(0u, map, altitude) * share;
-        (*air).diffuse += diffuse_share(cover_at(map, altitude), (*air).clear) * share;
-#else
-        (*air).beam += share;
-        (*air).diffuse += share;
-#endif
+        add_air(air, to_map(atmosphere.radius_m, position_m(ray, middle_m)), altitude, share);
     }
     (*air).at_m = (*air).passed_m;
     (*air).media_m = vec3<f32>(0.0);
@@ -226,12 +242,14 @@ fn left_on_surface(air: ptr<function, Air>, map: vec2<f32>, altitude: f32) -> ve
 #endif
 }
 
-// Moves on through the air beyond a distance, out into space: above all clouds, or below none. What nothing lights or hides
+// Moves on through the air beyond a distance, out into space: above all clouds and fog, or below none. What nothing lights or hides
 // there needs no look.
 fn leave_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>) {
     follow_air(air, ray);
 #ifdef AIR
-#ifdef CLOUDS
+    if FOG_COUNT == 0u && CLOUD_LAYER_COUNT == 0u {
+        return;
+    }
     let from_m = (*air).passed_m;
     var at_m = from_m;
     if altitude_m(ray, from_m) > atmosphere.top_m {
@@ -247,9 +265,6 @@ fn leave_air(air: ptr<function, Air>, ray: ptr<function, Ray>, media: vec3<f32>)
     let own = optical_depth_to_top(altitude, mu);
     let share = media * exp(-(*air).depth) * opacity(own);
     (*air).depth += own;
-    let map = to_map(atmosphere.radius_m, position_m(ray, at_m));
-    (*air).beam += straight_left(0u, map, altitude) * share;
-    (*air).diffuse += diffuse_share(cover_at(map, altitude), (*air).clear) * share;
-#endif
+    add_air(air, to_map(atmosphere.radius_m, position_m(ray, at_m)), altitude, share);
 #endif
 }

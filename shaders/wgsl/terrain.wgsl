@@ -22,7 +22,8 @@
 #import welkin::surface_light::{diffuse_irradiance, light_transmittance}
 #ifdef LOCAL_MEDIA
 #import welkin::cluster::{cluster_of, slice_of}
-#import welkin::media_ground::{fog_share, lit_by_lamps}
+#import welkin::fog_daylight::fog_share
+#import welkin::media_ground::lit_by_lamps
 #import welkin::volume_field::place_of
 #endif
 
