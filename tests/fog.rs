@@ -144,6 +144,24 @@ fn a_bank_that_scatters_forward_is_as_bright_as_the_path_tracer_finds_on_either_
 }
 
 #[test]
+fn what_absorbs_hides_a_bank_by_beers_law_however_the_bank_scatters() {
+    let bank = Bank { albedo: 1.0, asymmetry: 0.85, sun_azimuth_deg: 140.0, camera_altitude_m: 400.0 }.scene();
+    // A pane, two metres before the camera, whose shadow lies elsewhere.
+    let pane = dark(
+        "[[volumes]]\nname = \"pane\"\nshape = \"ellipsoid\"\ncentre_m = [0, 1.53, 398.71]\nsize_m = [1, 1, 1]\nabsorption_per_m = 1.5\n",
+    );
+    let behind_pane = Scene { volumes: [bank.volumes.clone(), pane.volumes].concat(), ..bank.clone() };
+    let rendered = render(&[(bank.clone(), low()), (behind_pane, low())]);
+    let pixel = (bank.camera.width * bank.camera.height / 2 + bank.camera.width / 2) as usize;
+    let [open, hidden] = [0, 1].map(|i| f64::from(rendered[i].frame.radiance[pixel][1]));
+    let behind = f64::from(rendered[1].frame.transmittance[pixel][1] / rendered[0].frame.transmittance[pixel][1]);
+    assert!(behind < 0.3, "the pane hides: {behind}");
+    assert!((hidden / open / behind - 1.0).abs() < 2e-3, "{} for {behind}", hidden / open);
+    // Negative control: dimmed by as much of the depth as turns light away in the bank it would be another.
+    assert!((hidden / open / behind.powf(1.0 - 0.85 * 0.85) - 1.0).abs() > 0.1);
+}
+
+#[test]
 fn fog_and_volumes_without_light_let_through_what_beers_law_says() {
     let scene = dark(&format!("{FOG}{MIST}{BALL}"));
     let frame = &render(&[(scene.clone(), low())])[0].frame;

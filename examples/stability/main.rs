@@ -46,6 +46,9 @@ fn options() -> Options {
 
 fn main() {
     let options = options();
+    if let Some(path) = &options.out {
+        table::around_marks(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    }
     let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
     let cases: Vec<Case> = all().into_iter().filter(|case| case.name.contains(&options.part)).collect();
     let walks = if options.long { LONG_WALKS } else { WALKS };

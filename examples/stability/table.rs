@@ -17,10 +17,16 @@ const END: &str = "<!-- end of what is made -->\n";
 
 /// Puts what was made into a page, in place of what stands between the two marks.
 pub fn put_into(path: &Path, made: &str) -> io::Result<()> {
-    let page = fs::read_to_string(path)?;
-    let marks = page.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
-    let (head, tail) = marks.ok_or_else(|| io::Error::other(format!("has no lines '{BEGIN}' and '{END}'")))?;
+    let [head, tail] = around_marks(path)?;
     fs::write(path, format!("{head}{BEGIN}{made}{END}{tail}"))
+}
+
+/// What stands before and behind the place of a page for what is made; asked before hours of work, too.
+pub fn around_marks(path: &Path) -> io::Result<[String; 2]> {
+    let page = fs::read_to_string(path)?;
+    let marks = page.split_once(BEGIN).and_then(|(head, rest)| Some([head, rest.split_once(END)?.1]));
+    let around = marks.ok_or_else(|| io::Error::other(format!("has no lines '{BEGIN}' and '{END}'")))?;
+    Ok(around.map(str::to_owned))
 }
 
 /// The table of cases, and what fails.

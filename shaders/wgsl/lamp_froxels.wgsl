@@ -59,7 +59,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             light = on_ground(Place(below.p, 0.0, below.map), middle_m, cluster);
         }
     } else if place.altitude_m <= volumes[part].top_m + rise_m && place.altitude_m >= max(volumes[part].bottom_m, 0.0) - rise_m {
-        let stretch = Stretch(view, origin, start_m, end_m - start_m, vec3<f32>(0.0), vec3<f32>(0.0));
+        let stretch = Stretch(view, origin, start_m, end_m - start_m, vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0));
         let piece = Piece(part, 1.0, place);
         var lamps = lamps_of(cluster);
         for (var lamp = next_member(&lamps); lamp != NONE; lamp = next_member(&lamps)) {

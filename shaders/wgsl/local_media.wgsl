@@ -24,7 +24,7 @@
     position_m, ray_of, rise_at, through_air, Air, Ray, NEVER_M, OPAQUE,
 }
 #import welkin::volume_field::{fog_density, place_of, volumes, Place, FOG_COUNT, VOLUME_COUNT}
-#import welkin::volume_source::{from_lights, seen, Piece, Stretch}
+#import welkin::volume_source::{from_lights, seen_whole, Piece, Stretch}
 #if LOCAL_LIGHT_COUNT > 0
 #import welkin::cluster_members::{lamps_of, near_lamps_of}
 #import welkin::lamp_source::{from_local_light, ALL, NEAR}
@@ -61,6 +61,8 @@ struct Sum {
     // Optical depth so far: of clouds, of fog and volumes.
     clouds: f32,
     local: vec3<f32>,
+    // That of the medium similar to all of them: welkin::volume_source.
+    similar: vec3<f32>,
 }
 
 fn greatest(v: vec3<f32>) -> f32 {
@@ -77,7 +79,7 @@ fn from_lamps(piece: Piece, stretch: Stretch, pixel: vec2<u32>, cluster: u32) ->
     if piece.index < FOG_COUNT {
         asked = NEAR;
         lamps = near_lamps_of(cluster);
-        radiance = from_far_lamps(piece.index, pixel, stretch.from_m + 0.5 * stretch.step_m) * seen(stretch, vec3<f32>(1.0));
+        radiance = from_far_lamps(piece.index, pixel, stretch.from_m + 0.5 * stretch.step_m) * seen_whole(stretch, vec3<f32>(0.0));
     }
 #endif
     for (var light = next_member(&lamps); light != NONE; light = next_member(&lamps)) {
@@ -90,7 +92,7 @@ fn from_lamps(piece: Piece, stretch: Stretch, pixel: vec2<u32>, cluster: u32) ->
 // What one volume adds in a step, before the air.
 fn from_volume(piece: Piece, stretch: Stretch, pixel: vec2<u32>, cluster: u32) -> vec3<f32> {
     let own = piece.density * stretch.step_m;
-    let radiance = own * volumes[piece.index].emission_per_m * seen(stretch, vec3<f32>(1.0));
+    let radiance = own * volumes[piece.index].emission_per_m * seen_whole(stretch, vec3<f32>(0.0));
     if all(volumes[piece.index].scattering_per_m <= vec3<f32>(0.0)) {
         return radiance;
     }
@@ -129,20 +131,24 @@ fn clouds_lit_by_lamps(place: Place, extinction: f32, stretch: Stretch, cluster:
 #endif
 #endif
 
-// A step: the point that stands for it, and the extinction of fog and volumes there.
+// A step: the point that stands for it, and the extinction of fog and volumes there, 1/m.
 struct Step {
     length_m: f32,
     place: Place,
     half_rise_m: f32,
     extinction: vec3<f32>,
+    // Of the similar medium.
+    similar_extinction: vec3<f32>,
 }
 
 fn step_at(ray: ptr<function, Ray>, t_m: f32, length_m: f32, share: f32, cluster: u32) -> Step {
-    var step = Step(length_m, place_of(position_m(ray, t_m + share * length_m)), 0.0, vec3<f32>(0.0));
+    var step = Step(length_m, place_of(position_m(ray, t_m + share * length_m)), 0.0, vec3<f32>(0.0), vec3<f32>(0.0));
     step.half_rise_m = 0.5 * (altitude_m(ray, t_m + length_m) - altitude_m(ray, t_m));
     var media = media_of(cluster);
     for (var index = next_member(&media); index != NONE; index = next_member(&media)) {
-        step.extinction += volumes[index].extinction_per_m * fog_density(index, step.place, step.half_rise_m);
+        let own = volumes[index].extinction_per_m * fog_density(index, step.place, step.half_rise_m);
+        step.extinction += own;
+        step.similar_extinction += volumes[index].similar_extinction * own;
     }
     return step;
 }
@@ -227,13 +233,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let step = next_step(&ray, t_m, boundary_m, here, growth_behind(greatest(before)), select(0.5, offset, here.uneven));
         let own = step.extinction * step.length_m;
         var within = own;
+        var similar_within = step.similar_extinction * step.length_m;
         let air_leaves = through_air(&air, t_m);
 #ifdef CLOUDS
         let at = step.place;
         let cloudy = select(0.0, cloud_extinction(at.map, at.altitude_m), here.clouds);
         within += cloudy * step.length_m;
+        // Droplets of all layers are taken to be those of the first.
+        similar_within += cloud_matter[0].similarity * cloudy * step.length_m;
 #endif
-        let stretch = Stretch(ray.direction, observer_position(), t_m, step.length_m, before, within);
+        let stretch = Stretch(ray.direction, observer_position(), t_m, step.length_m, before, within, sum.similar, similar_within);
 #ifdef CLOUDS
         if cloudy > 0.0 {
             let up = normalize(vec3<f32>(at.p.xy, at.p.z + atmosphere.radius_m));
@@ -254,6 +263,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             }
         }
         sum.local += own;
+        sum.similar += similar_within;
         t_m += step.length_m;
         pass_air(&air, &ray, exp(-sum.clouds - sum.local), t_m);
     }

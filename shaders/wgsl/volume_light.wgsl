@@ -19,7 +19,8 @@
 }
 #import welkin::volume_grid::{place_in_block, CELLS, COLUMNS, FOG_LEVELS}
 
-// Optical depth of fog and volumes in the bands, and in the last component what clouds and hills dim the light by.
+// Optical depth of fog and volumes in the bands, and in the last component what dims the light besides: clouds and hills, and where other
+// matter lies before it what the similar medium of that matter dims it by beyond the share that the volume's own has of it.
 @group(1) @binding(42) var volume_light_image: texture_storage_3d<rgba16float, write>;
 // Straight up and down through fog and the volume itself: depths of the similar medium, and depths times the share that
 // turns light back.
@@ -52,17 +53,24 @@ fn behind_hills(place: Place, local: vec3<f32>, footprint_m: f32) -> f32 {
 }
 #endif
 
-fn depth_to_light(index: u32, place: Place, light: u32) -> vec3<f32> {
+// A volume's optical depth, and how much of it the similar medium has beyond the share that another volume's has of its own.
+fn counted_for(index: u32, other: u32, length_m: f32) -> vec4<f32> {
+    let depth = volumes[other].extinction_per_m * length_m;
+    let beyond = (volumes[other].similar_extinction - volumes[index].similar_extinction) * depth;
+    return vec4<f32>(depth, dot(beyond, vec3<f32>(1.0 / 3.0)));
+}
+
+fn depth_to_light(index: u32, place: Place, light: u32) -> vec4<f32> {
     let toward = observer.lights[light].direction;
     let local = local_direction(place.map, toward);
-    var depth = vec3<f32>(0.0);
+    var depth = vec4<f32>(0.0);
     for (var i = 0u; i < FOG_COUNT; i++) {
-        depth += volumes[i].extinction_per_m * fog_length_m(i, place, local, FARTHEST_M, SAMPLES);
+        depth += counted_for(index, i, fog_length_m(i, place, local, FARTHEST_M, SAMPLES));
     }
     let air_m = way_to_top_m(place, toward);
     for (var i = 0u; i < volumes[index].occluder_count; i++) {
         let other = local_lists[volumes[index].occluders_first + i];
-        depth += volumes[other].extinction_per_m * local_length_m(other, place.p, toward, air_m, SAMPLES);
+        depth += counted_for(index, other, local_length_m(other, place.p, toward, air_m, SAMPLES));
     }
     return depth;
 }
@@ -104,20 +112,19 @@ fn main(@builtin(global_invocation_id) texel: vec3<u32>) {
     if !is_fog {
         place = place_of(place.p);
     }
-    var others = 0.0;
-    var depth = vec3<f32>(0.0);
+    var depth = vec4<f32>(0.0);
     // Without a light the image has one slot all the same.
     if light < LIGHT_COUNT {
 #ifdef CLOUDS
-        others -= log(max(straight_left(light, place.map, place.altitude_m), 1e-20));
+        depth.a -= log(max(straight_left(light, place.map, place.altitude_m), 1e-20));
 #endif
 #ifdef SURFACE_HILLS
         let local = local_direction(place.map, observer.lights[light].direction);
-        others += behind_hills(place, local, 20.0);
+        depth.a += behind_hills(place, local, 20.0);
 #endif
-        depth = depth_to_light(index, place, light);
+        depth += depth_to_light(index, place, light);
     }
-    textureStore(volume_light_image, texel, min(vec4<f32>(depth, others), vec4<f32>(DARK)));
+    textureStore(volume_light_image, texel, min(depth, vec4<f32>(DARK)));
     if light == 0u {
         let depths = vec4<f32>(vertical(index, place, 1.0), vertical(index, place, -1.0));
         textureStore(volume_sky_image, texel, min(depths, vec4<f32>(DARK)));

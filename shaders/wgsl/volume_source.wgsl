@@ -4,7 +4,7 @@
 // Legend
 //   peak      what of the phase function rises above a ceiling: light that only peaks scatter stays in its beam, while its directions
 //             spread (welkin_lut::forward_peak). What is below turns light away
-//   similar   the medium in which peaks count as nothing: q times the optical depth
+//   similar   the medium in which peaks count as nothing: of each kind of matter q times its optical depth
 //   stretch   what a step does to light: depth before it and in it, of all media
 //
 // Light that is turned away twice or more is that of an even slab in fog (welkin::slab_field); in a local volume what is scattered once
@@ -56,6 +56,9 @@ struct Stretch {
     // Optical depth of all media but the air before the step, and in it.
     before: vec3<f32>,
     within: vec3<f32>,
+    // That of what is similar to them.
+    similar_before: vec3<f32>,
+    similar_within: vec3<f32>,
 }
 
 // Matter of one volume in a step: the point that stands for it, and its density there.
@@ -73,13 +76,15 @@ fn phase_per_sr(index: u32, nu: f32) -> f32 {
     return sum;
 }
 
-// Mean over a step of e^(-a tau), and of e^(-a tau - s (x - 1/2)) for what changes along it besides, x from 0 to 1.
-fn seen_changing(stretch: Stretch, attenuation: vec3<f32>, slope: vec3<f32>) -> vec3<f32> {
-    return exp(0.5 * slope - attenuation * stretch.before) * mean_transmittance(attenuation * stretch.within + slope);
+// Mean over a step of e^(-tau), of light that is dimmed by the whole depth; times e^(-s (x - 1/2)) of what changes along it besides, x from 0
+// to 1.
+fn seen_whole(stretch: Stretch, slope: vec3<f32>) -> vec3<f32> {
+    return exp(0.5 * slope - stretch.before) * mean_transmittance(stretch.within + slope);
 }
 
-fn seen(stretch: Stretch, attenuation: vec3<f32>) -> vec3<f32> {
-    return seen_changing(stretch, attenuation, vec3<f32>(0.0));
+// The same of light that peaks do not dim.
+fn seen_similar(stretch: Stretch, slope: vec3<f32>) -> vec3<f32> {
+    return exp(0.5 * slope - stretch.similar_before) * mean_transmittance(stretch.similar_within + slope);
 }
 
 // How the depth to a light changes from the beginning of a step to its end: in even fog it falls as the ray climbs. Less than to
@@ -96,16 +101,15 @@ fn change_to_light(piece: Piece, stretch: Stretch, up: vec3<f32>, mu_s: f32, to_
 // Radiance of a light's beam that matter scatters once, or turns away once, per irradiance, b and metre.
 fn from_beam(piece: Piece, stretch: Stretch, nu: f32, to_light: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
     let phase = phase_per_sr(piece.index, nu);
-    let whole = vec3<f32>(1.0);
 #ifdef VOLUME_ORDERS
     let q = volumes[piece.index].similar_extinction;
     let turning = min(phase, volume_phases[piece.index].ceiling_per_sr);
     let left = exp(-q * to_light);
-    let again = peak_again_per_sr(volumes[piece.index].beam_field, to_light, nu) * seen_changing(stretch, whole, q * change);
-    return left * (turning * seen_changing(stretch, q, q * change) + again)
-        + (phase - turning) * exp(-to_light) * seen_changing(stretch, whole, change);
+    let again = peak_again_per_sr(volumes[piece.index].beam_field, to_light, nu) * seen_whole(stretch, q * change);
+    return left * (turning * seen_similar(stretch, q * change) + again)
+        + (phase - turning) * exp(-to_light) * seen_whole(stretch, change);
 #else
-    return phase * exp(-to_light) * seen_changing(stretch, whole, change);
+    return phase * exp(-to_light) * seen_whole(stretch, change);
 #endif
 }
 
@@ -135,7 +139,7 @@ fn diffuse_source(piece: Piece, light: u32, standing: Standing, arriving: vec3<f
         let spot = slab_spot(depths.x, depths.z);
         let of_beam = slab_light(slab_table(piece.index, light), spot);
         let of_sky = slab_light(slab_table(piece.index, LIGHT_COUNT), spot);
-        let beam_flux = max(standing.mu_s, 0.0) * exp(-beam.a) * arriving;
+        let beam_flux = max(standing.mu_s, 0.0) * exp(-max(beam.a, 0.0)) * arriving;
         let sky_flux = PI * around.above;
         let mean = beam_flux * of_beam.mean_radiance + sky_flux * of_sky.mean_radiance;
         let upward = beam_flux * of_beam.upward + sky_flux * of_sky.upward;
@@ -144,7 +148,7 @@ fn diffuse_source(piece: Piece, light: u32, standing: Standing, arriving: vec3<f
         return max(mean + volume.reduced_cosine * 3.0 / FOUR_PI * against, vec3<f32>(0.0)) * volume.similarity;
     }
     let mean_depth = dot(beam.rgb, vec3<f32>(1.0 / 3.0));
-    let left = exp(-beam.a) / (1.0 + 0.75 * volume.backward * mean_depth);
+    let left = exp(-max(beam.a, 0.0)) / (1.0 + 0.75 * volume.backward * mean_depth);
     let share = sky_share(depths);
     let from_sky = 0.5 * (around.above * share.x + around.below * share.y);
     return volume.similarity * (volume.again * arriving * left / FOUR_PI + from_sky);
@@ -170,11 +174,12 @@ fn from_lights(piece: Piece, stretch: Stretch) -> vec3<f32> {
         let q = volumes[piece.index].similar_extinction;
         let standing = Standing(mu_s, dot(stretch.view, up), nu);
         let source = diffuse_source(piece, light, standing, arriving, around, depths, beam);
-        radiance += source * seen(stretch, q);
+        let similar = seen_similar(stretch, vec3<f32>(0.0));
+        radiance += source * similar;
         // Light from behind that is scattered by small angles only, over the albedo, by which scattering is the extinction's.
         let behind = select(around.below, around.above, dot(stretch.view, up) > 0.0);
         let per_albedo = volumes[piece.index].extinction_per_m / max(volumes[piece.index].scattering_per_m, vec3<f32>(1e-30));
-        radiance += behind * per_albedo * (seen(stretch, vec3<f32>(1.0)) - q * seen(stretch, q));
+        radiance += behind * per_albedo * (seen_whole(stretch, vec3<f32>(0.0)) - q * similar);
 #endif
     }
     return radiance;
