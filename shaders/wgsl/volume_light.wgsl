@@ -53,11 +53,12 @@ fn behind_hills(place: Place, local: vec3<f32>, footprint_m: f32) -> f32 {
 }
 #endif
 
-// A volume's optical depth, and how much of it the similar medium has beyond the share that another volume's has of its own.
+// A volume's optical depth, and how much of it the similar medium has beyond the share that another volume's has of its own. Where it has less
+// the light is dimmed by that share all the same: a difference of two large depths would not survive half floats.
 fn counted_for(index: u32, other: u32, length_m: f32) -> vec4<f32> {
     let depth = volumes[other].extinction_per_m * length_m;
     let beyond = (volumes[other].similar_extinction - volumes[index].similar_extinction) * depth;
-    return vec4<f32>(depth, dot(beyond, vec3<f32>(1.0 / 3.0)));
+    return vec4<f32>(depth, dot(max(beyond, vec3<f32>(0.0)), vec3<f32>(1.0 / 3.0)));
 }
 
 fn depth_to_light(index: u32, place: Place, light: u32) -> vec4<f32> {

@@ -139,7 +139,7 @@ fn diffuse_source(piece: Piece, light: u32, standing: Standing, arriving: vec3<f
         let spot = slab_spot(depths.x, depths.z);
         let of_beam = slab_light(slab_table(piece.index, light), spot);
         let of_sky = slab_light(slab_table(piece.index, LIGHT_COUNT), spot);
-        let beam_flux = max(standing.mu_s, 0.0) * exp(-max(beam.a, 0.0)) * arriving;
+        let beam_flux = max(standing.mu_s, 0.0) * exp(-beam.a) * arriving;
         let sky_flux = PI * around.above;
         let mean = beam_flux * of_beam.mean_radiance + sky_flux * of_sky.mean_radiance;
         let upward = beam_flux * of_beam.upward + sky_flux * of_sky.upward;
@@ -148,7 +148,7 @@ fn diffuse_source(piece: Piece, light: u32, standing: Standing, arriving: vec3<f
         return max(mean + volume.reduced_cosine * 3.0 / FOUR_PI * against, vec3<f32>(0.0)) * volume.similarity;
     }
     let mean_depth = dot(beam.rgb, vec3<f32>(1.0 / 3.0));
-    let left = exp(-max(beam.a, 0.0)) / (1.0 + 0.75 * volume.backward * mean_depth);
+    let left = exp(-beam.a) / (1.0 + 0.75 * volume.backward * mean_depth);
     let share = sky_share(depths);
     let from_sky = 0.5 * (around.above * share.x + around.below * share.y);
     return volume.similarity * (volume.again * arriving * left / FOUR_PI + from_sky);
