@@ -5,7 +5,7 @@ mod common;
 use std::sync::OnceLock;
 
 use welkin::gpu::{Gpu, GpuImage, ImageFormat, ImageShape, Resource, Work};
-use welkin::passes::blocks::{LampFields, LocalLists, lamps, volume_blocks};
+use welkin::passes::blocks::{AngularFields, LocalLists, lamps, volume_blocks};
 use welkin::plan::{Facts, Outputs, Quality, Settings};
 use welkin::probe::Orders;
 use welkin::scene::Scene;
@@ -217,7 +217,7 @@ fn volumes_on_device(gpu: &Gpu, tiles: &Tiles, scene: &Scene, points: &[[f32; 4]
     let mut all = welkin::passes::definitions(&facts);
     all.extend(definitions);
     let pipeline = gpu.pipeline(&Shader::from_sources(&sources, "volume_density", &all).unwrap()).unwrap();
-    let blocks = volume_blocks(&facts, &LocalLists::new(&facts, &lamps(&facts)), &LampFields::default());
+    let blocks = volume_blocks(&facts, &LocalLists::new(&facts, &lamps(&facts)), &AngularFields::default());
     let volumes = gpu.storage_buffer_of("volumes", &blocks).unwrap();
     let points = gpu.storage_buffer_of("points", points).unwrap();
     let found = gpu.storage_buffer("found", points.bytes() / 4).unwrap();

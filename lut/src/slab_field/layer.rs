@@ -110,7 +110,7 @@ impl Streams {
 
     /// Share of a beam with a cosine that matter sends on into another, per optical depth and steradian; on which side of it says the
     /// sign.
-    fn from_beam_per_sr(&self, side: f64, to: f64, from: f64) -> f64 {
+    fn beam_scattered_per_sr(&self, side: f64, to: f64, from: f64) -> f64 {
         self.albedo / (4.0 * PI)
             * match self.part {
                 Part::Mean => 1.0 + 3.0 * self.mean_cosine * side * to * from,
@@ -120,7 +120,7 @@ impl Streams {
 
     /// The same of radiance that goes as the part does: the mean of cos² φ is a half.
     fn scattered_per_sr(&self, side: f64, to: f64, from: f64) -> f64 {
-        self.from_beam_per_sr(side, to, from) * if self.part == Part::Mean { 1.0 } else { 0.5 }
+        self.beam_scattered_per_sr(side, to, from) * if self.part == Part::Mean { 1.0 } else { 0.5 }
     }
 
     /// How many times a layer that is thin enough is doubled, and its optical depth.
@@ -185,7 +185,7 @@ pub fn source(streams: &Streams, depth: f64, mu: f64) -> Source {
     let of = |side: f64| {
         std::array::from_fn(|i| {
             let cosine = streams.cosines[i];
-            streams.from_beam_per_sr(side, cosine, mu) * lost(thin, mu) / cosine
+            streams.beam_scattered_per_sr(side, cosine, mu) * lost(thin, mu) / cosine
         })
     };
     let mut layer = Layer::thin(streams, thin);

@@ -73,25 +73,38 @@ fn around_lamp(volume: &Volume) -> Matter {
     matter(volume, Source::Lamp { radius: radius(volume) })
 }
 
-/// A row of a table: values at its angles, then flux and mean of lamps, all over the light that the depth takes.
-fn row(matter: &Matter, band: usize) -> Box<dyn Fn(f64, &[f64]) -> Vec<f64>> {
-    let albedo = matter.albedo[band];
-    match matter.source {
-        Source::Lamp { radius } => {
-            let field = LampField::new(&matter.phase, albedo, radius[band]);
-            Box::new(move |depth, cosines| {
-                let (mut values, flux) = (field.scattered_per_sr(depth, cosines), field.flux(depth));
-                values.extend([flux.outward, flux.scalar]);
-                values.iter().map(|value| value / -(-depth).exp_m1()).collect()
-            })
+/// What rows of one band are made of.
+enum Field {
+    Lamp(LampField),
+    Beam { peak: ForwardPeak, share: f64, albedo: f64 },
+}
+
+impl Field {
+    fn new(matter: &Matter, band: usize) -> Self {
+        let albedo = matter.albedo[band];
+        match matter.source {
+            Source::Lamp { radius } => Self::Lamp(LampField::new(&matter.phase, albedo, radius[band])),
+            Source::Beam => {
+                Self::Beam { peak: ForwardPeak::new(&matter.phase), share: forward_peak::share(&matter.phase), albedo }
+            }
         }
-        Source::Beam => {
-            let (peak, share) = (ForwardPeak::new(&matter.phase), forward_peak::share(&matter.phase));
-            Box::new(move |depth, cosines| {
-                let per = ((1.0 - albedo * share) * depth).exp() / -(-depth).exp_m1();
-                let values = peak.scattered_again_per_sr(albedo, depth, cosines);
-                values.iter().map(|value| value * per).chain([0.0; 2]).collect()
-            })
+    }
+
+    /// A row: values at its angles, then flux and mean of lamps, over the light that the depth takes; of a beam also over what the
+    /// similar medium leaves of it.
+    fn row(&self, depth: f64, cosines: &[f64]) -> Vec<f64> {
+        let opacity = -(-depth).exp_m1();
+        match self {
+            Self::Lamp(field) => {
+                let flux = field.flux(depth);
+                let values = field.scattered_per_sr(depth, cosines).into_iter();
+                values.chain([flux.outward, flux.scalar]).map(|value| value / opacity).collect()
+            }
+            Self::Beam { peak, share, albedo } => {
+                let per = ((1.0 - albedo * share) * depth).exp() / opacity;
+                let values = peak.scattered_again_per_sr(*albedo, depth, cosines).into_iter();
+                values.map(|value| value * per).chain([0.0; 2]).collect()
+            }
         }
     }
 }
@@ -114,10 +127,10 @@ fn texels(matter: &Matter) -> Vec<[f32; 4]> {
             texels.iter_mut().for_each(|texel| texel[band] = texel[other]);
             continue;
         }
-        let row = row(matter, band);
+        let field = Field::new(matter, band);
         for (index, of_depth) in texels.chunks_exact_mut(ANGLES + 2).enumerate() {
             let depth = RANGE[0] * (RANGE[1] / RANGE[0]).powf(index as f64 / (DEPTHS - 1) as f64);
-            of_depth.iter_mut().zip(row(depth, &cosines)).for_each(|(texel, value)| texel[band] = value as f32);
+            of_depth.iter_mut().zip(field.row(depth, &cosines)).for_each(|(texel, value)| texel[band] = value as f32);
         }
     }
     texels
