@@ -8,8 +8,8 @@
 //   nu        cosine between the direction in which light leaves and that away from the source
 //   row, column   whole and part of an index
 
-// Rows of depths, ever the same factor apart; columns of angles as sqrt(angle / π), then the net flux away from a lamp and the integral
-// over all directions.
+// Rows of depths, ever the same factor apart; columns of angles as sqrt(angle / π), then of lamps the net flux away from them and the integral
+// over all directions, of beams the ceiling at which the peak begins.
 @group(1) @binding(48) var<storage, read> angular_fields: array<vec4<f32>>;
 
 // welkin::passes::blocks::angular_fields has the same numbers.
@@ -53,7 +53,7 @@ fn scattered_before(field: u32, depth: vec3<f32>, nu: f32) -> vec3<f32> {
     return found;
 }
 
-// The flux columns at a whole row: net flux away from a lamp, and the integral over all directions.
-fn flux_of_row(field: u32, row: u32) -> u32 {
+// The first of the last two columns at a whole row.
+fn last_columns(field: u32, row: u32) -> u32 {
     return (field * DEPTHS + row) * COLUMNS + ANGLES;
 }

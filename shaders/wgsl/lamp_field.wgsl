@@ -4,7 +4,7 @@
 //
 // Legend: welkin::angular_field. What tables hold is over the lamp's intensity, over 1 - e^(-depth), and times the square of the distance.
 
-#import welkin::angular_field::{angular_fields, flux_of_row, row_of, scattered_before, DEPTHS, NO_FIELD}
+#import welkin::angular_field::{angular_fields, last_columns, row_of, scattered_before, DEPTHS, NO_FIELD}
 #import welkin::attenuation::opacity
 
 // K: what is scattered a second time or more, per b, intensity and distance^-2, 1/sr.
@@ -15,7 +15,7 @@ fn scattered_again_per_sr(field: u32, depth: vec3<f32>, nu: f32) -> vec3<f32> {
 // How far the scattered field spreads about the direction away from the lamp: 1 - its mean cosine.
 fn spread_of_field(field: u32, depth: vec3<f32>) -> f32 {
     let row = u32(row_of(max(depth.r, max(depth.g, depth.b))) + 0.5);
-    let flux = flux_of_row(field, row);
+    let flux = last_columns(field, row);
     return 1.0 - angular_fields[flux].g / max(angular_fields[flux + 1u].g, 1e-20);
 }
 
@@ -35,8 +35,8 @@ fn scattered_irradiance(field: u32, depth: vec3<f32>, cosine: f32) -> vec3<f32> 
     }
     let row = row_of(max(depth.r, max(depth.g, depth.b)));
     let low = min(u32(row), DEPTHS - 2u);
-    let near = flux_of_row(field, low);
-    let far = flux_of_row(field, low + 1u);
+    let near = last_columns(field, low);
+    let far = last_columns(field, low + 1u);
     let outward = mix(angular_fields[near].rgb, angular_fields[far].rgb, row - f32(low));
     let scalar = mix(angular_fields[near + 1u].rgb, angular_fields[far + 1u].rgb, row - f32(low));
     return opacity(depth) * (outward * max(cosine, 0.0) + 0.25 * max(scalar - outward, vec3<f32>(0.0)));

@@ -18,7 +18,7 @@
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::attenuation::mean_transmittance
 #ifdef VOLUME_ORDERS
-#import welkin::beam_field::peak_again_per_sr
+#import welkin::beam_field::{ceiling_per_sr, peak_again_per_sr}
 #endif
 #import welkin::cloud_daylight::{light_in_air, surroundings, Surroundings}
 #import welkin::observer::{observer, LIGHT_COUNT}
@@ -35,11 +35,6 @@ const LOWEST_SUN: f32 = 0.02;
 
 struct VolumePhase {
     lobes: array<PhaseLobe, VOLUME_LOBES>,
-    // Where its forward peak begins.
-    ceiling_per_sr: f32,
-    padding_a: f32,
-    padding_b: f32,
-    padding_c: f32,
 }
 
 // Volume by volume, and behind them the layers of clouds.
@@ -103,9 +98,10 @@ fn from_beam(piece: Piece, stretch: Stretch, nu: f32, to_light: vec3<f32>, chang
     let phase = phase_per_sr(piece.index, nu);
 #ifdef VOLUME_ORDERS
     let q = volumes[piece.index].similar_extinction;
-    let turning = min(phase, volume_phases[piece.index].ceiling_per_sr);
+    let field = volumes[piece.index].beam_field;
+    let turning = min(phase, ceiling_per_sr(field));
     let left = exp(-q * to_light);
-    let again = peak_again_per_sr(volumes[piece.index].beam_field, to_light, nu) * seen_whole(stretch, q * change);
+    let again = peak_again_per_sr(field, to_light, nu) * seen_whole(stretch, q * change);
     return left * (turning * seen_similar(stretch, q * change) + again)
         + (phase - turning) * exp(-to_light) * seen_whole(stretch, change);
 #else
@@ -160,6 +156,13 @@ fn from_lights(piece: Piece, stretch: Stretch) -> vec3<f32> {
     let spot = spot_of(piece.index, piece.place);
     let up = normalize(vec3<f32>(piece.place.p.xy, piece.place.p.z + atmosphere.radius_m));
     let depths = textureSampleLevel(volume_sky_image, table_sampler, block_uvw(spot.block, spot.share, 0u, 1u), 0.0);
+#ifdef VOLUME_ORDERS
+    let q = volumes[piece.index].similar_extinction;
+    let similar = seen_similar(stretch, vec3<f32>(0.0));
+    // Light from behind that is scattered by small angles only, over the albedo, by which scattering is the extinction's.
+    let per_albedo = volumes[piece.index].extinction_per_m / max(volumes[piece.index].scattering_per_m, vec3<f32>(1e-30));
+    let passed = per_albedo * (seen_whole(stretch, vec3<f32>(0.0)) - q * similar);
+#endif
     var radiance = vec3<f32>(0.0);
     for (var light = 0u; light < LIGHT_COUNT; light++) {
         let uvw = block_uvw(spot.block, spot.share, light, LIGHT_COUNT);
@@ -171,15 +174,9 @@ fn from_lights(piece: Piece, stretch: Stretch) -> vec3<f32> {
         radiance += arriving * exp(-beam.a) * from_beam(piece, stretch, nu, beam.rgb, change);
 #ifdef VOLUME_ORDERS
         let around = surroundings(piece.place.altitude_m, mu_s, observer.lights[light].irradiance);
-        let q = volumes[piece.index].similar_extinction;
         let standing = Standing(mu_s, dot(stretch.view, up), nu);
-        let source = diffuse_source(piece, light, standing, arriving, around, depths, beam);
-        let similar = seen_similar(stretch, vec3<f32>(0.0));
-        radiance += source * similar;
-        // Light from behind that is scattered by small angles only, over the albedo, by which scattering is the extinction's.
-        let behind = select(around.below, around.above, dot(stretch.view, up) > 0.0);
-        let per_albedo = volumes[piece.index].extinction_per_m / max(volumes[piece.index].scattering_per_m, vec3<f32>(1e-30));
-        radiance += behind * per_albedo * (seen_whole(stretch, vec3<f32>(0.0)) - q * similar);
+        radiance += similar * diffuse_source(piece, light, standing, arriving, around, depths, beam);
+        radiance += passed * select(around.below, around.above, standing.mu_view > 0.0);
 #endif
     }
     return radiance;

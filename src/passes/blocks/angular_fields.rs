@@ -90,8 +90,8 @@ impl Field {
         }
     }
 
-    /// A row: values at its angles, then flux and mean of lamps, over the light that the depth takes; of a beam also over what the
-    /// similar medium leaves of it.
+    /// A row: values at its angles, then of lamps flux and mean, all over the light that the depth takes; of a beam also over what the
+    /// similar medium leaves of it, but for the ceiling of its peak, which comes last.
     fn row(&self, depth: f64, cosines: &[f64]) -> Vec<f64> {
         let opacity = -(-depth).exp_m1();
         match self {
@@ -103,7 +103,9 @@ impl Field {
             Self::Beam { peak, share, albedo } => {
                 let per = ((1.0 - albedo * share) * depth).exp() / opacity;
                 let values = peak.scattered_again_per_sr(*albedo, depth, cosines).into_iter();
-                values.map(|value| value * per).chain([0.0; 2]).collect()
+                // The shaders' least of two numbers knows no infinity.
+                let ceiling_per_sr = peak.ceiling_per_sr().min(f64::from(f32::MAX));
+                values.map(|value| value * per).chain([ceiling_per_sr, 0.0]).collect()
             }
         }
     }

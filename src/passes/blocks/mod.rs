@@ -212,7 +212,7 @@ mod tests {
             ]
         );
         assert_eq!(size(&media, "Volume"), size_of::<VolumeBlock>());
-        assert_layout!(media, "VolumePhase", VolumePhaseBlock, [lobes, ceiling_per_sr]);
+        assert_layout!(media, "VolumePhase", VolumePhaseBlock, [lobes]);
         assert_eq!(size(&media, "VolumePhase"), size_of::<VolumePhaseBlock>());
         assert_layout!(
             media,

@@ -1,7 +1,7 @@
 //! Fog and local volumes as the shaders read them.
 
 use bytemuck::{Pod, Zeroable};
-use welkin_lut::forward_peak::{self, ForwardPeak};
+use welkin_lut::forward_peak;
 use welkin_lut::volume::{Volume, VolumeForm, VolumeParameters};
 use welkin_lut::{Bands, PhaseFunction};
 
@@ -55,8 +55,6 @@ pub struct VolumeBlock {
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct VolumePhaseBlock {
     pub(super) lobes: [PhaseLobeBlock; VOLUME_LOBES],
-    pub(super) ceiling_per_sr: f32,
-    pub(super) padding: [f32; 3],
 }
 
 /// Mean chord of a local form, 4 V / S (Cauchy), m; that of an ellipsoid for the sphere of its volume.
@@ -176,9 +174,7 @@ impl VolumePhaseBlock {
     fn new(phase: &PhaseFunction) -> Self {
         let mut lobes = [PhaseLobeBlock::ABSENT; VOLUME_LOBES];
         lobes.iter_mut().zip(scaled_lobes(phase, 1.0)).for_each(|(slot, lobe)| *slot = lobe);
-        // The shaders' least of two numbers knows no infinity.
-        let ceiling = ForwardPeak::new(phase).ceiling_per_sr().min(f64::from(f32::MAX));
-        Self { lobes, ceiling_per_sr: ceiling as f32, padding: [0.0; 3] }
+        Self { lobes }
     }
 }
 
