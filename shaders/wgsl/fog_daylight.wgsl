@@ -8,14 +8,11 @@
 #import welkin::atmosphere::PI
 #import welkin::cloud_daylight::{light_in_air, surroundings}
 #import welkin::observer::{observer, LIGHT_COUNT}
-#import welkin::slab_field::{slab_light, slab_on_ground, slab_spot, slab_table}
+#import welkin::slab_field::{slab_light, slab_on_ground, slab_spot, slab_table, LOWEST_SUN}
 #import welkin::tables::table_sampler
 #import welkin::volume_field::{volumes, Place, FOG_COUNT}
 #import welkin::volume_grid::{block_uvw, spot_of, FOG_LEVELS}
 #import welkin::volume_source::volume_sky_image
-
-// A lower sun counts as this high in a slab.
-const LOWEST_SUN: f32 = 0.02;
 
 // Share of the light on a horizontal plane, of which shares of the beam and of the sky reach the top of the fog.
 fn fog_share(place: Place, above: vec2<f32>) -> f32 {

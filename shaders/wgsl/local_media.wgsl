@@ -268,8 +268,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         pass_air(&air, &ray, exp(-sum.clouds - sum.local), t_m);
     }
     // What peaks pass on of light from behind is a difference, step by step: where all of it is lost in the end, what that light changed by on
-    // the way is left, and roundings.
-    sum.radiance = max(sum.radiance, vec3<f32>(0.0));
+    // the way is left, and roundings. What is no number stays none, and is seen.
+    sum.radiance = select(sum.radiance, vec3<f32>(0.0), sum.radiance < vec3<f32>(0.0));
     let transmittance = exp(-sum.clouds - sum.local);
     var ground = vec2<f32>(1.0);
     if ray.end_m < NEVER_M {

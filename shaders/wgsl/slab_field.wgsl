@@ -22,6 +22,9 @@ const LOG_DEPTHS: f32 = 7.09090982;
 const OF_PAIR: u32 = 3u;
 const TABLE: u32 = (OF_PAIR * DEPTHS + 1u) * DEPTHS;
 
+// Sine of the elevation as which a lower light counts.
+const LOWEST_SUN: f32 = 0.02;
+
 struct SlabLight {
     mean_radiance: vec3<f32>,
     // Net flux upwards.

@@ -46,25 +46,23 @@ struct Volume {
     similar_extinction: vec3<f32>,
     // 1 - f, the share of scattering that turns light from its line.
     similarity: f32,
-    // Single-scattering albedo of the similar medium.
-    similar_albedo: vec3<f32>,
     // Mean cosine of that share.
     reduced_cosine: f32,
     // 1 - the whole mean cosine.
     backward: f32,
     // Whether density is 1 all through a local volume.
     is_even: u32,
-    // Volumes that may stand between it and a light, in `local_lists`: where they begin, and how many.
-    occluders_first: u32,
-    occluder_count: u32,
-    // Of the light that it scatters once, what it scatters again, and again: over the light itself.
-    again: vec3<f32>,
     // First block of its grid of light.
     first_block: u32,
+    // Of the light that it scatters once, what it scatters again, and again: over the light itself.
+    again: vec3<f32>,
     // Its table of lamps' scattered light: welkin::lamp_field.
     lamp_field: u32,
     // Its table of what its forward peak makes of a beam: welkin::beam_field.
     beam_field: u32,
+    // Volumes that may stand between it and a light, in `local_lists`: where they begin, and how many.
+    occluders_first: u32,
+    occluder_count: u32,
 }
 
 @group(1) @binding(40) var<storage, read> volumes: array<Volume>;

@@ -23,15 +23,13 @@
 #import welkin::cloud_daylight::{light_in_air, surroundings, Surroundings}
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
-#import welkin::slab_field::{slab_light, slab_spot, slab_table}
+#import welkin::slab_field::{slab_light, slab_spot, slab_table, LOWEST_SUN}
 #import welkin::tables::table_sampler
 #import welkin::volume_field::{volumes, Place, FOG_COUNT}
 #import welkin::volume_grid::{block_uvw, spot_of}
 
 const VOLUME_LOBES: u32 = 2u;
 const FOUR_PI: f32 = 12.5663706;
-// A lower sun counts as this high where depths to it change along a ray.
-const LOWEST_SUN: f32 = 0.02;
 
 struct VolumePhase {
     lobes: array<PhaseLobe, VOLUME_LOBES>,

@@ -199,16 +199,15 @@ mod tests {
                 grid_first,
                 similar_extinction,
                 similarity,
-                similar_albedo,
                 reduced_cosine,
                 backward,
                 is_even,
-                occluders_first,
-                occluder_count,
-                again,
                 first_block,
+                again,
                 lamp_field,
-                beam_field
+                beam_field,
+                occluders_first,
+                occluder_count
             ]
         );
         assert_eq!(size(&media, "Volume"), size_of::<VolumeBlock>());

@@ -37,17 +37,16 @@ pub struct VolumeBlock {
     pub(super) grid_first: u32,
     pub(super) similar_extinction: [f32; 3],
     pub(super) similarity: f32,
-    pub(super) similar_albedo: [f32; 3],
     pub(super) reduced_cosine: f32,
     pub(super) backward: f32,
     pub(super) is_even: u32,
-    pub(super) occluders_first: u32,
-    pub(super) occluder_count: u32,
-    pub(super) again: [f32; 3],
     pub(super) first_block: u32,
+    pub(super) again: [f32; 3],
     pub(super) lamp_field: u32,
     pub(super) beam_field: u32,
-    pub(super) padding: [u32; 2],
+    pub(super) occluders_first: u32,
+    pub(super) occluder_count: u32,
+    pub(super) padding: u32,
 }
 
 /// WGSL `VolumePhase`.
@@ -132,7 +131,6 @@ impl VolumeBlock {
             grid_first,
             similar_extinction: vec3(similar.extinction),
             similarity: (1.0 - forward_peak::share(&volume.phase)) as f32,
-            similar_albedo: vec3(similar.albedo),
             reduced_cosine: forward_peak::mean_cosine_of_rest(&volume.phase) as f32,
             backward: (1.0 - volume.phase.mean_cosine()) as f32,
             is_even: u32::from(is_even),
@@ -142,7 +140,7 @@ impl VolumeBlock {
             occluder_count: occluders.len() as u32,
             lamp_field: fields.around_lamp(volume),
             beam_field: fields.in_beam(volume),
-            padding: [0; 2],
+            padding: 0,
         }
     }
 }
