@@ -3,8 +3,8 @@
 //! `cargo run --release --example random_scenes -- COUNT [VALUES] [SEED]`
 //!
 //! Nearly all of the time of a random scene is the compiling of its shaders. Few are drawn whole, therefore, and each of them
-//! is rendered with VALUES other sets of numbers (by default 1000), which mostly need the same shaders. What breaks a law is
-//! made small and kept in `tests/regressions/`.
+//! is rendered with VALUES other sets of numbers (by default 1000), or as many as a minute allows, which mostly need the same shaders. What
+//! breaks a law is made small and kept in `tests/regressions/`.
 
 #[path = "../tests/hard_cases/laws.rs"]
 #[allow(dead_code)]
@@ -14,7 +14,7 @@ mod scene_strategy;
 
 use std::path::Path;
 use std::process::ExitCode;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use std::{fs, io};
 
 use proptest::prelude::*;
@@ -28,6 +28,8 @@ use welkin::renderer::Renderer;
 
 /// A scene whose numbers ask for ever new shaders is left after so many.
 const MOST_PIPELINES: u64 = 60;
+/// And after so long, so that the time is not all spent on the slowest.
+const LONGEST: Duration = Duration::from_secs(60);
 /// Trials of making a failing scene small.
 const TRIALS: usize = 300;
 /// Share of the fields of an example scene that a random one's take the place of.
@@ -115,7 +117,8 @@ impl Sweep {
         let before = self.rendered();
         let mut table = whole.clone();
         for _ in 0..values {
-            if self.rendered() == count || self.renderer.compiled_pipelines() - compiled > MOST_PIPELINES {
+            let pipelines = self.renderer.compiled_pipelines() - compiled;
+            if self.rendered() == count || pipelines > MOST_PIPELINES || began.elapsed() > LONGEST {
                 break;
             }
             match fate(&mut self.renderer, &table.to_string(), true) {

@@ -24,7 +24,7 @@
     position_m, ray_of, rise_at, through_air, Air, Ray, NEVER_M, OPAQUE,
 }
 #import welkin::volume_field::{fog_density, place_of, volumes, Place, FOG_COUNT, VOLUME_COUNT}
-#import welkin::volume_source::{from_lights, seen_whole, Piece, Stretch}
+#import welkin::volume_source::{from_lights, seen_whole, Arriving, Piece, Stretch}
 #if LOCAL_LIGHT_COUNT > 0
 #import welkin::cluster_members::{lamps_of, near_lamps_of}
 #import welkin::lamp_source::{from_local_light, ALL, NEAR}
@@ -58,6 +58,8 @@ const CLOUD_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
 
 struct Sum {
     radiance: vec3<f32>,
+    // Light from behind that forward peaks pass on.
+    passed: vec3<f32>,
     // Optical depth so far: of clouds, of fog and volumes.
     clouds: f32,
     local: vec3<f32>,
@@ -79,7 +81,7 @@ fn from_lamps(piece: Piece, stretch: Stretch, pixel: vec2<u32>, cluster: u32) ->
     if piece.index < FOG_COUNT {
         asked = NEAR;
         lamps = near_lamps_of(cluster);
-        radiance = from_far_lamps(piece.index, pixel, stretch.from_m + 0.5 * stretch.step_m) * seen_whole(stretch, vec3<f32>(0.0));
+        radiance = from_far_lamps(piece.index, pixel, stretch.from_m + 0.5 * stretch.step_m) * seen_whole(stretch);
     }
 #endif
     for (var light = next_member(&lamps); light != NONE; light = next_member(&lamps)) {
@@ -90,17 +92,18 @@ fn from_lamps(piece: Piece, stretch: Stretch, pixel: vec2<u32>, cluster: u32) ->
 #endif
 
 // What one volume adds in a step, before the air.
-fn from_volume(piece: Piece, stretch: Stretch, pixel: vec2<u32>, cluster: u32) -> vec3<f32> {
+fn from_volume(piece: Piece, stretch: Stretch, pixel: vec2<u32>, cluster: u32) -> Arriving {
     let own = piece.density * stretch.step_m;
-    let radiance = own * volumes[piece.index].emission_per_m * seen_whole(stretch, vec3<f32>(0.0));
+    let emitted = own * volumes[piece.index].emission_per_m * seen_whole(stretch);
     if all(volumes[piece.index].scattering_per_m <= vec3<f32>(0.0)) {
-        return radiance;
+        return Arriving(emitted, vec3<f32>(0.0));
     }
     var arriving = from_lights(piece, stretch);
 #if LOCAL_LIGHT_COUNT > 0
-    arriving += from_lamps(piece, stretch, pixel, cluster);
+    arriving.scattered += from_lamps(piece, stretch, pixel, cluster);
 #endif
-    return radiance + own * volumes[piece.index].scattering_per_m * arriving;
+    let scattering = own * volumes[piece.index].scattering_per_m;
+    return Arriving(emitted + scattering * arriving.scattered, scattering * arriving.passed);
 }
 
 #ifdef CLOUDS
@@ -259,7 +262,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         for (var index = next_member(&media); index != NONE; index = next_member(&media)) {
             let density = fog_density(index, step.place, step.half_rise_m);
             if density > 0.0 {
-                sum.radiance += air_leaves * from_volume(Piece(index, density, step.place), stretch, ray.pixel, here.cluster);
+                let sent = from_volume(Piece(index, density, step.place), stretch, ray.pixel, here.cluster);
+                sum.radiance += air_leaves * sent.scattered;
+                sum.passed += air_leaves * sent.passed;
             }
         }
         sum.local += own;
@@ -267,9 +272,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         t_m += step.length_m;
         pass_air(&air, &ray, exp(-sum.clouds - sum.local), t_m);
     }
-    // What peaks pass on of light from behind is a difference, step by step: where all of it is lost in the end, what that light changed by on
-    // the way is left, and roundings. What is no number stays none, and is seen.
-    sum.radiance = select(sum.radiance, vec3<f32>(0.0), sum.radiance < vec3<f32>(0.0));
+    // Less than nothing of the light from behind cannot pass. What is no number stays none, and is seen.
+    sum.radiance += select(sum.passed, vec3<f32>(0.0), sum.passed < vec3<f32>(0.0));
     let transmittance = exp(-sum.clouds - sum.local);
     var ground = vec2<f32>(1.0);
     if ray.end_m < NEVER_M {

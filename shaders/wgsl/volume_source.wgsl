@@ -16,7 +16,7 @@
 // Definitions: VOLUME_ORDERS (light scattered more than once belongs in the picture), LIT, LIGHT_COUNT.
 
 #import welkin::atmosphere::{atmosphere, PI}
-#import welkin::attenuation::mean_transmittance
+#import welkin::attenuation::mean_between
 #ifdef VOLUME_ORDERS
 #import welkin::beam_field::{ceiling_per_sr, peak_again_per_sr}
 #endif
@@ -69,41 +69,52 @@ fn phase_per_sr(index: u32, nu: f32) -> f32 {
     return sum;
 }
 
-// Mean over a step of e^(-tau), of light that is dimmed by the whole depth; times e^(-s (x - 1/2)) of what changes along it besides, x from 0
-// to 1.
-fn seen_whole(stretch: Stretch, slope: vec3<f32>) -> vec3<f32> {
-    return exp(0.5 * slope - stretch.before) * mean_transmittance(stretch.within + slope);
+// What of its sources' light a step sends on, in the mean: of light that is dimmed by the whole depth.
+fn seen_whole(stretch: Stretch) -> vec3<f32> {
+    return mean_between(stretch.before, stretch.before + stretch.within);
 }
 
 // The same of light that peaks do not dim.
-fn seen_similar(stretch: Stretch, slope: vec3<f32>) -> vec3<f32> {
-    return exp(0.5 * slope - stretch.similar_before) * mean_transmittance(stretch.similar_within + slope);
+fn seen_similar(stretch: Stretch) -> vec3<f32> {
+    return mean_between(stretch.similar_before, stretch.similar_before + stretch.similar_within);
+}
+
+// Optical depth from a light to the beginning of a step and to its end.
+struct ToLight {
+    first: vec3<f32>,
+    last: vec3<f32>,
+}
+
+// What is left of a light's beam on its way to a step and, dimmed by the whole depth, from there to the observer, in the mean.
+fn lit_whole(stretch: Stretch, to_light: ToLight) -> vec3<f32> {
+    return mean_between(to_light.first + stretch.before, to_light.last + stretch.before + stretch.within);
 }
 
 // How the depth to a light changes from the beginning of a step to its end: in even fog it falls as the ray climbs. Less than to
 // nothing it cannot. Elsewhere a step's point stands for all of it.
-fn change_to_light(piece: Piece, stretch: Stretch, up: vec3<f32>, mu_s: f32, to_light: vec3<f32>) -> vec3<f32> {
+fn along_step(piece: Piece, stretch: Stretch, up: vec3<f32>, mu_s: f32, depth: vec3<f32>) -> ToLight {
     if piece.index >= FOG_COUNT || volumes[piece.index].noise_strength > 0.0 {
-        return vec3<f32>(0.0);
+        return ToLight(depth, depth);
     }
     let climbs_m = dot(stretch.view, up) * stretch.step_m;
     let change = volumes[piece.index].extinction_per_m * (piece.density * -climbs_m / max(mu_s, LOWEST_SUN));
-    return clamp(change, -2.0 * to_light, 2.0 * to_light);
+    let half = clamp(0.5 * change, -depth, depth);
+    return ToLight(depth - half, depth + half);
 }
 
 // Radiance of a light's beam that matter scatters once, or turns away once, per irradiance, b and metre.
-fn from_beam(piece: Piece, stretch: Stretch, nu: f32, to_light: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
+fn from_beam(piece: Piece, stretch: Stretch, nu: f32, depth: vec3<f32>, to_light: ToLight) -> vec3<f32> {
     let phase = phase_per_sr(piece.index, nu);
+    let whole = lit_whole(stretch, to_light);
 #ifdef VOLUME_ORDERS
     let q = volumes[piece.index].similar_extinction;
     let field = volumes[piece.index].beam_field;
     let turning = min(phase, ceiling_per_sr(field));
-    let left = exp(-q * to_light);
-    let again = peak_again_per_sr(field, to_light, nu) * seen_whole(stretch, q * change);
-    return left * (turning * seen_similar(stretch, q * change) + again)
-        + (phase - turning) * exp(-to_light) * seen_whole(stretch, change);
+    let similar = ToLight(q * to_light.first, q * to_light.last);
+    let seen = mean_between(similar.first + stretch.similar_before, similar.last + stretch.similar_before + stretch.similar_within);
+    return turning * seen + (phase - turning) * whole + peak_again_per_sr(field, depth, nu) * lit_whole(stretch, similar);
 #else
-    return phase * exp(-to_light) * seen_whole(stretch, change);
+    return phase * whole;
 #endif
 }
 
@@ -149,33 +160,40 @@ fn diffuse_source(piece: Piece, light: u32, standing: Standing, arriving: vec3<f
 }
 #endif
 
-// Radiance that directional lights and the sky bring, per density and metre, before the air.
-fn from_lights(piece: Piece, stretch: Stretch) -> vec3<f32> {
+// Radiance per density and metre, before the air. What peaks pass on of light from behind is a difference, of what all scattering and what
+// turning away leaves: step by step it may be below nothing, and where that light changes from step to step so may its sum.
+struct Arriving {
+    scattered: vec3<f32>,
+    passed: vec3<f32>,
+}
+
+// What directional lights and the sky bring.
+fn from_lights(piece: Piece, stretch: Stretch) -> Arriving {
     let spot = spot_of(piece.index, piece.place);
     let up = normalize(vec3<f32>(piece.place.p.xy, piece.place.p.z + atmosphere.radius_m));
     let depths = textureSampleLevel(volume_sky_image, table_sampler, block_uvw(spot.block, spot.share, 0u, 1u), 0.0);
 #ifdef VOLUME_ORDERS
     let q = volumes[piece.index].similar_extinction;
-    let similar = seen_similar(stretch, vec3<f32>(0.0));
+    let similar = seen_similar(stretch);
     // Light from behind that is scattered by small angles only, over the albedo, by which scattering is the extinction's.
     let per_albedo = volumes[piece.index].extinction_per_m / max(volumes[piece.index].scattering_per_m, vec3<f32>(1e-30));
-    let passed = per_albedo * (seen_whole(stretch, vec3<f32>(0.0)) - q * similar);
+    let passed = per_albedo * (seen_whole(stretch) - q * similar);
 #endif
-    var radiance = vec3<f32>(0.0);
+    var arriving = Arriving(vec3<f32>(0.0), vec3<f32>(0.0));
     for (var light = 0u; light < LIGHT_COUNT; light++) {
         let uvw = block_uvw(spot.block, spot.share, light, LIGHT_COUNT);
         let beam = textureSampleLevel(volume_light_image, table_sampler, uvw, 0.0);
         let mu_s = dot(up, observer.lights[light].direction);
-        let arriving = light_in_air(light, piece.place.altitude_m, mu_s);
+        let beam_in_air = light_in_air(light, piece.place.altitude_m, mu_s);
         let nu = clamp(dot(stretch.view, observer.lights[light].direction), -1.0, 1.0);
-        let change = change_to_light(piece, stretch, up, mu_s, beam.rgb);
-        radiance += arriving * exp(-beam.a) * from_beam(piece, stretch, nu, beam.rgb, change);
+        let to_light = along_step(piece, stretch, up, mu_s, beam.rgb);
+        arriving.scattered += beam_in_air * exp(-beam.a) * from_beam(piece, stretch, nu, beam.rgb, to_light);
 #ifdef VOLUME_ORDERS
         let around = surroundings(piece.place.altitude_m, mu_s, observer.lights[light].irradiance);
         let standing = Standing(mu_s, dot(stretch.view, up), nu);
-        radiance += similar * diffuse_source(piece, light, standing, arriving, around, depths, beam);
-        radiance += passed * select(around.below, around.above, standing.mu_view > 0.0);
+        arriving.scattered += similar * diffuse_source(piece, light, standing, beam_in_air, around, depths, beam);
+        arriving.passed += passed * select(around.below, around.above, standing.mu_view > 0.0);
 #endif
     }
-    return radiance;
+    return arriving;
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use proptest::test_runner::{Config, TestCaseError, TestError, TestRng, TestRunner};
 use welkin::passes::RenderError;
-use welkin::plan::{Directions, Outputs, Quality, Settings, SourceGrid};
+use welkin::plan::{CloudSettings, Directions, Outputs, Quality, Settings, SourceGrid, VolumeSettings};
 use welkin::renderer::Renderer;
 use welkin::scene::{Scene, SceneError};
 
@@ -36,6 +36,7 @@ const CAPTURE: Outputs = Outputs { capture: true, picture: true };
 
 /// Tables so small that a frame costs next to nothing; all passes are the same.
 fn tiny() -> Settings {
+    let low = Settings::of(Quality::Low);
     Settings {
         nodes_per_leg: 4,
         optical_depth_size: [16, 8],
@@ -46,7 +47,9 @@ fn tiny() -> Settings {
         source_orders: 3,
         sky_view_size: [8, 8],
         froxel_size: [4, 4, 4],
-        ..Settings::of(Quality::Low)
+        clouds: CloudSettings { sweeps: 3, ordinate_cells: 8, max_steps: 64, grid_size: 8, grid_slices: 4, ..low.clouds },
+        volumes: VolumeSettings { max_steps: 64, cells: 6, beam_samples: 4, ..low.volumes },
+        ..low
     }
 }
 
