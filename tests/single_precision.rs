@@ -8,10 +8,11 @@ mod common;
 use welkin::gpu::{Gpu, Resource, Work};
 use welkin_lut::geometry;
 use welkin_lut::mapping::OpticalDepthMapping;
-use welkin_shaders::{Definitions, Shader, Sources};
+use welkin_shaders::{Definition, Definitions, Shader, Sources};
 
 /// Four inputs a row; the functions' values in columns.
 const PASS: &str = "
+#import welkin::cluster
 #import welkin::geometry
 #import welkin::mapping
 
@@ -166,7 +167,9 @@ fn worst(function: &Function, inputs: &[[f32; 4]], values: &[f32]) -> (f64, [f32
 
 fn evaluate(gpu: &Gpu, wgsl: &str, inputs: &[[f32; 4]]) -> Vec<f32> {
     let sources = Sources::embedded().with("evaluate.wgsl", PASS.replace("FUNCTION", wgsl));
-    let pipeline = gpu.pipeline(&Shader::from_sources(&sources, "evaluate", &Definitions::new()).unwrap()).unwrap();
+    let counts = ["VOLUME_COUNT", "FOG_COUNT", "LOCAL_LIGHT_COUNT", "CLUSTER_COLUMNS"];
+    let definitions: Definitions = counts.iter().map(|name| ((*name).to_owned(), Definition::U32(1))).collect();
+    let pipeline = gpu.pipeline(&Shader::from_sources(&sources, "evaluate", &definitions).unwrap()).unwrap();
     let given = gpu.storage_buffer_of("inputs", inputs).unwrap();
     let found = gpu.storage_buffer_of("outputs", &vec![0.0_f32; inputs.len()]).unwrap();
     let mut commands = gpu.record("evaluate").unwrap();
@@ -197,5 +200,25 @@ fn the_horizon_from_squares_of_radii_is_off_by_millions_of_last_places() {
         let (error, at) = worst(function, &inputs, &evaluate(gpu, naive, &inputs));
         println!("naive: {error:e} at {at:?}");
         assert!(error > 1e6, "{error} at {at:?}");
+    });
+}
+
+/// How far ahead `wgsl` finds the end of a slice, as a share of the distance, from places at and around all ends.
+fn slice_ends_ahead(gpu: &Gpu, wgsl: &str) -> Vec<f32> {
+    let places = (0..22).flat_map(|slice| {
+        let end_m = (4.0 * (f64::from(slice) * 0.584_962_5).exp2()) as f32;
+        (-64_i32..=64).map(move |places| [f32::from_bits((end_m.to_bits() as i32 + places) as u32), 0.0, 0.0, 0.0])
+    });
+    evaluate(gpu, wgsl, &places.collect::<Vec<_>>())
+}
+
+#[test]
+fn a_ray_that_has_come_to_the_end_of_a_slice_has_the_next_before_it() {
+    common::with_gpu(|gpu| {
+        let ahead = slice_ends_ahead(gpu, "(cluster::slice_end_m(cluster::slice_beyond(x.x)) - x.x) / x.x");
+        assert!(ahead.iter().all(|share| *share > 0.0 && *share < 0.51), "{ahead:?}");
+        // Light and matter behind such places were missing from single pixels.
+        let rounded = slice_ends_ahead(gpu, "(cluster::slice_end_m(cluster::slice_of(x.x)) - x.x) / x.x");
+        assert!(rounded.iter().any(|share| *share <= 0.0), "the control finds no place");
     });
 }

@@ -36,6 +36,12 @@ fn slice_end_m(slice: u32) -> f32 {
     return select(NEAR_M * exp2(f32(slice) * LOG_RATIO), 1e30, slice + 1u >= SLICES);
 }
 
+// The first slice that ends beyond a distance: rounding may still count an end to the slice before it.
+fn slice_beyond(distance_m: f32) -> u32 {
+    let slice = slice_of(distance_m);
+    return select(slice + 1u, slice, slice_end_m(slice) > distance_m);
+}
+
 // The first word of a cluster.
 fn cluster_of(pixel: vec2<u32>, slice: u32) -> u32 {
     let tile = pixel / TILE;

@@ -3,7 +3,7 @@
 //
 // Definitions: CLOUDS; FOG_COUNT.
 
-#import welkin::cluster::{cluster_of, slice_end_m, slice_of}
+#import welkin::cluster::{cluster_of, slice_beyond, slice_end_m, slice_of}
 #import welkin::cluster_members::{next_member, volumes_of, NONE}
 #import welkin::media_march::{altitude_m, next_crossing_m, observer_position, Ray, NEVER_M}
 #import welkin::volume_field::{local_span_m, volumes, FOG_COUNT}
@@ -16,9 +16,8 @@ const CLOUD_STEP_M: f32 = #{CLOUD_STEP_M}.0;
 // The next boundary after a distance: of a layer, a local volume or a cluster's slice, or the ray's end.
 fn next_boundary_m(ray: ptr<function, Ray>, t_m: f32) -> f32 {
     let after_m = t_m * 1.000001 + 1e-4;
-    let slice = slice_of(after_m);
+    let slice = slice_beyond(after_m);
     var next = min(next_crossing_m(ray, t_m), slice_end_m(slice));
-    next = select(next, NEVER_M, next <= after_m);
     var locals = volumes_of(cluster_of((*ray).pixel, slice));
     for (var index = next_member(&locals); index != NONE; index = next_member(&locals)) {
         let span_m = local_span_m(index, observer_position(), (*ray).direction);
