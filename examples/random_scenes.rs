@@ -86,11 +86,11 @@ impl Sweep {
         strategy.new_tree(&mut self.runner).expect("nothing is filtered").current()
     }
 
-    /// A scene drawn whole: every second one an example with some fields of a random scene.
+    /// A scene drawn whole: every second one an example with some fields of a random scene. All are of few pixels.
     fn whole(&mut self) -> toml::Table {
         let random = self.draw(scene_strategy::scene_file());
         if self.structures.is_multiple_of(2) {
-            return random;
+            return of_few_pixels(random, false);
         }
         let index = self.draw(0..self.known.len());
         let mut table = self.known[index].clone();
@@ -99,12 +99,7 @@ impl Sweep {
                 table.insert(name, value);
             }
         }
-        if let Some(toml::Value::Table(camera)) = table.get_mut("camera") {
-            for side in ["width", "height"] {
-                camera.insert(side.to_owned(), toml::Value::Integer(3));
-            }
-        }
-        table
+        of_few_pixels(table, true)
     }
 
     /// One scene drawn whole, with many sets of numbers.
@@ -149,6 +144,19 @@ impl Sweep {
         let why = fate(renderer, &small.to_string(), true).err().unwrap_or_else(|| words.to_owned());
         eprintln!("{}", keep(&small, &why));
     }
+}
+
+/// The scene in three by three pixels: `always`, or where the file says nothing and pictures would be large.
+fn of_few_pixels(mut table: toml::Table, always: bool) -> toml::Table {
+    let camera = table.entry("camera").or_insert_with(|| toml::Value::Table(toml::Table::new()));
+    if let toml::Value::Table(camera) = camera {
+        for side in ["width", "height"] {
+            if always || !camera.contains_key(side) {
+                camera.insert(side.to_owned(), toml::Value::Integer(3));
+            }
+        }
+    }
+    table
 }
 
 /// All scene files below a folder.

@@ -104,7 +104,7 @@ fn cover_at(map: vec2<f32>, altitude_m: f32) -> Cover {
     return Cover(above.x, above.y, above.z, kept.x, kept.z, ground.x, ground.y, ground.z);
 }
 
-// The first light's fluxes through a horizontal plane in clear air: its beam, the sky's light from above and what comes
+// A light's fluxes through a horizontal plane in clear air: its beam, the sky's light from above and what comes
 // from below, over the sum of the last two.
 struct ClearFluxes {
     beam: vec3<f32>,
@@ -112,11 +112,13 @@ struct ClearFluxes {
     below: vec3<f32>,
 }
 
-fn clear_fluxes(altitude_m: f32, mu_s: f32) -> ClearFluxes {
-    let around = surroundings(altitude_m, mu_s, observer.lights[0].irradiance);
+fn fluxes_of(around: Surroundings, beam: vec3<f32>, mu_s: f32) -> ClearFluxes {
     let diffuse = max(around.above + around.below, vec3<f32>(1e-20));
-    let beam = max(mu_s, 0.0) * light_in_air(0u, altitude_m, mu_s) / PI;
-    return ClearFluxes(beam / diffuse, around.above / diffuse, around.below / diffuse);
+    return ClearFluxes(max(mu_s, 0.0) / PI * beam / diffuse, around.above / diffuse, around.below / diffuse);
+}
+
+fn clear_fluxes(altitude_m: f32, mu_s: f32) -> ClearFluxes {
+    return fluxes_of(surroundings(altitude_m, mu_s, observer.lights[0].irradiance), light_in_air(0u, altitude_m, mu_s), mu_s);
 }
 
 // Of what falls on the ground, what comes back up.
@@ -124,16 +126,34 @@ fn returned(clear: ClearFluxes) -> vec3<f32> {
     return clear.below / max(clear.beam + clear.sky, vec3<f32>(1e-20));
 }
 
-// Diffuse light at a point relative to that in clear air: what is left of the sky's, what clouds make of the beam above
-// and below, and the ground's, which follows what reaches it and is thrown to and fro below the clouds.
-fn diffuse_share(cover: Cover, clear: ClearFluxes) -> vec3<f32> {
+// Diffuse light at a point, downwards and upwards, relative to both together in clear air: what is left of the sky's, what clouds make of the
+// beam above and below, and the ground's, which follows what reaches it and is thrown to and fro below the clouds.
+struct DiffuseFluxes {
+    downward: vec3<f32>,
+    upward: vec3<f32>,
+}
+
+fn diffuse_fluxes(cover: Cover, clear: ClearFluxes) -> DiffuseFluxes {
     let albedo = returned(clear);
     let on_ground = (cover.ground_beam * clear.beam + cover.ground_sky * clear.sky)
         / (1.0 - (1.0 - cover.ground_sky) * albedo);
     let passed = 1.0 - cover.back_sky;
     let upward = passed * albedo * on_ground + cover.back_beam * clear.beam + cover.back_sky * clear.sky;
     let downward = (cover.through - cover.straight) * clear.beam + cover.diffuse * clear.sky;
-    return upward + downward + (1.0 - cover.diffuse) * upward;
+    return DiffuseFluxes(downward + (1.0 - cover.diffuse) * upward, upward);
+}
+
+fn diffuse_share(cover: Cover, clear: ClearFluxes) -> vec3<f32> {
+    let fluxes = diffuse_fluxes(cover, clear);
+    return fluxes.downward + fluxes.upward;
+}
+
+// The diffuse field of the air at a place among clouds, of a light. What they leave of the light is that of the first.
+fn surroundings_among_clouds(light: u32, map: vec2<f32>, altitude_m: f32, mu_s: f32) -> Surroundings {
+    let around = surroundings(altitude_m, mu_s, observer.lights[light].irradiance);
+    let both = around.above + around.below;
+    let fluxes = diffuse_fluxes(cover_at(map, altitude_m), fluxes_of(around, light_in_air(light, altitude_m, mu_s), mu_s));
+    return Surroundings(both * fluxes.downward, both * fluxes.upward);
 }
 
 // What is left on the ground of the first light's flux and of the sky's light; between clouds and ground, light is thrown

@@ -13,14 +13,19 @@
 //
 // Local lights are welkin::lamp_source.
 //
-// Definitions: VOLUME_ORDERS (light scattered more than once belongs in the picture), LIT, LIGHT_COUNT.
+// Definitions: VOLUME_ORDERS (light scattered more than once belongs in the picture), CLOUDS, LIGHT_COUNT.
 
 #import welkin::atmosphere::{atmosphere, PI}
 #import welkin::attenuation::mean_between
 #ifdef VOLUME_ORDERS
 #import welkin::beam_field::{ceiling_per_sr, peak_again_per_sr}
 #endif
-#import welkin::cloud_daylight::{light_in_air, surroundings, Surroundings}
+#import welkin::cloud_daylight::{light_in_air, Surroundings}
+#ifdef CLOUDS
+#import welkin::cloud_daylight::surroundings_among_clouds
+#else
+#import welkin::cloud_daylight::surroundings
+#endif
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
 #import welkin::slab_field::{slab_light, slab_spot, slab_table, LOWEST_SUN}
@@ -118,6 +123,15 @@ fn from_beam(piece: Piece, stretch: Stretch, nu: f32, depth: vec3<f32>, to_light
 #endif
 }
 
+// The diffuse light of the air at a place.
+fn air_around(light: u32, place: Place, mu_s: f32) -> Surroundings {
+#ifdef CLOUDS
+    return surroundings_among_clouds(light, place.map, place.altitude_m, mu_s);
+#else
+    return surroundings(place.altitude_m, mu_s, observer.lights[light].irradiance);
+#endif
+}
+
 // What media leave of the sky above and below a place in a local volume.
 fn sky_share(depths: vec4<f32>) -> vec2<f32> {
     return 1.0 / (1.0 + 0.75 * depths.yw);
@@ -189,7 +203,7 @@ fn from_lights(piece: Piece, stretch: Stretch) -> Arriving {
         let to_light = along_step(piece, stretch, up, mu_s, beam.rgb);
         arriving.scattered += beam_in_air * exp(-beam.a) * from_beam(piece, stretch, nu, beam.rgb, to_light);
 #ifdef VOLUME_ORDERS
-        let around = surroundings(piece.place.altitude_m, mu_s, observer.lights[light].irradiance);
+        let around = air_around(light, piece.place, mu_s);
         let standing = Standing(mu_s, dot(stretch.view, up), nu);
         arriving.scattered += similar * diffuse_source(piece, light, standing, beam_in_air, around, depths, beam);
         arriving.passed += passed * select(around.below, around.above, standing.mu_view > 0.0);

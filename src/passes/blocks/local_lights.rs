@@ -1,17 +1,15 @@
 //! Point and spot lights, and glowing volumes as lights of what is around them, as the shaders read them.
 
-use std::f64::consts::PI;
-
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use welkin_lut::cloud::CloudLayer;
-use welkin_lut::volume::{Volume, VolumeField, VolumeForm, VolumeParameters};
+use welkin_lut::volume::{Volume, VolumeField, VolumeParameters};
 use welkin_lut::{BAND_COUNT, Bands};
 
 use super::angular_fields::{AngularFields, NO_FIELD};
+use super::glow::{Glow, is_glowing};
 use super::local_lists::LocalLists;
 use super::vec3;
-use super::volumes::mean_chord_m;
 use crate::plan::Facts;
 use crate::scene::Cone;
 
@@ -47,6 +45,8 @@ pub struct Lamp {
     cone: Option<Cone>,
     /// Radius of what shines, m.
     size_m: f64,
+    /// The volume that shines, whose intensity is what leaves it.
+    pub(super) own_volume: Option<usize>,
 }
 
 /// Matter where a lamp stands, without billows.
@@ -74,13 +74,25 @@ pub fn lamps(facts: &Facts) -> Vec<Lamp> {
         intensity: light.intensity,
         cone: light.cone,
         size_m: 0.0,
+        own_volume: None,
     });
-    let mut all: Vec<_> = lights.chain(facts.volumes.iter().filter_map(|volume| glow(volume))).collect();
+    let glowing = facts.volumes.iter().enumerate().filter_map(|(index, volume)| {
+        Glow::of(volume).map(|glow| Lamp {
+            position_m: DVec3::from_array(glow.centre_m),
+            reach_m: LONGEST_REACH_M,
+            core_reach_m: LONGEST_REACH_M,
+            intensity: glow.intensity,
+            cone: None,
+            size_m: glow.radius_m,
+            own_volume: Some(index),
+        })
+    });
+    let mut all: Vec<_> = lights.chain(glowing).collect();
     let positions: Vec<_> = all.iter().map(|lamp| lamp.position_m).collect();
     for (index, lamp) in all.iter_mut().enumerate() {
         let others = positions.iter().enumerate().filter(|(other, _)| *other != index);
         let nearest_m = others.map(|(_, other)| other.distance(lamp.position_m)).fold(f64::INFINITY, f64::min);
-        let around = surroundings(facts, lamp.position_m);
+        let around = surroundings(facts, lamp);
         let share = f64::from(facts.settings.volumes.lamp_share);
         lamp.reach_m = reach_m(nearest_m.max(1.0), &around, share);
         lamp.core_reach_m = reach_m(nearest_m.max(1.0), &around, share / CORE_SHARE);
@@ -88,61 +100,9 @@ pub fn lamps(facts: &Facts) -> Vec<Lamp> {
     all
 }
 
-/// Whether a local volume gives off light.
-fn is_glowing(volume: &Volume) -> bool {
-    volume.altitudes_m().is_none() && volume.emission_per_m.iter().any(|&e| e > 0.0)
-}
-
-/// A glowing volume as seen by what is around it: all of its light, from its middle, but for what it absorbs itself.
-fn glow(volume: &Volume) -> Option<Lamp> {
-    let (VolumeForm::Box { centre_m, size_m: [x, y, z], .. }
-    | VolumeForm::Ellipsoid { centre_m, size_m: [x, y, z], .. }) = volume.form
-    else {
-        return None;
-    };
-    if !is_glowing(volume) {
-        return None;
-    }
-    let filled = if matches!(volume.form, VolumeForm::Box { .. }) { 1.0 } else { PI / 6.0 };
-    let content_m3 = x * y * z * filled * mean_density(volume);
-    let chord_m = mean_chord_m(&volume.form);
-    Some(Lamp {
-        position_m: DVec3::from_array(centre_m),
-        reach_m: LONGEST_REACH_M,
-        core_reach_m: LONGEST_REACH_M,
-        intensity: std::array::from_fn(|band| {
-            volume.emission_per_m[band] * content_m3 / (1.0 + volume.absorption_per_m[band] * chord_m)
-        }),
-        cone: None,
-        size_m: 0.5 * (x * y * z).cbrt(),
-    })
-}
-
-/// Mean density over the volume's box, or over the ellipsoid in it.
-fn mean_density(volume: &Volume) -> f64 {
-    const POINTS: usize = 12;
-    if volume.edge == 0.0 && volume.noise.is_none() && volume.grid.is_none() {
-        return 1.0;
-    }
-    let parameters = VolumeParameters::new(volume, 0.0);
-    let field = VolumeField::new(volume, parameters);
-    let (mut sum, mut inside) = (0.0, 0.0);
-    for i in 0..POINTS.pow(3) {
-        let share = [i, i / POINTS, i / (POINTS * POINTS)].map(|i| ((i % POINTS) as f64 + 0.5) / POINTS as f64 - 0.5);
-        let q: [f64; 3] = std::array::from_fn(|axis| 2.0 * share[axis] * f64::from(parameters.half_size_m[axis]));
-        let [cos, sin] = parameters.turn.map(f64::from);
-        let p = [q[0] * cos + q[1] * sin, q[1] * cos - q[0] * sin, q[2]];
-        let p: [f64; 3] = std::array::from_fn(|axis| p[axis] + f64::from(parameters.centre_m[axis]));
-        let within = matches!(volume.form, VolumeForm::Box { .. }) || share.iter().map(|s| s * s).sum::<f64>() <= 0.25;
-        if within {
-            sum += field.density(p, [0.0; 2], 0.0);
-            inside += 1.0;
-        }
-    }
-    sum / f64::max(inside, 1.0)
-}
-
-fn surroundings(facts: &Facts, at: DVec3) -> Surroundings {
+/// What is about a lamp, but for the volume that is the lamp.
+fn surroundings(facts: &Facts, lamp: &Lamp) -> Surroundings {
+    let at = lamp.position_m;
     let mut all = Surroundings {
         scattering_per_m: [0.0; BAND_COUNT],
         absorption_per_m: [0.0; BAND_COUNT],
@@ -150,7 +110,7 @@ fn surroundings(facts: &Facts, at: DVec3) -> Surroundings {
         densest: None,
     };
     let (mut turned, mut scattered, mut most) = (0.0, 0.0, 0.0);
-    for (index, volume) in facts.volumes.iter().enumerate() {
+    for (index, volume) in facts.volumes.iter().enumerate().filter(|(index, _)| Some(*index) != lamp.own_volume) {
         let even = Volume { noise: None, ..(*volume).clone() };
         let density =
             VolumeField::new(&even, VolumeParameters::new(&even, 0.0)).density(at.to_array(), [at.x, at.y], at.z)
@@ -197,7 +157,7 @@ fn reach_m(neighbour_m: f64, around: &Surroundings, share: f64) -> f64 {
 
 impl LocalLightBlock {
     fn new(facts: &Facts, lamp: &Lamp, fields: &AngularFields, list: std::ops::Range<usize>) -> Self {
-        let around = surroundings(facts, lamp.position_m);
+        let around = surroundings(facts, lamp);
         let (axis, inner, outer) = match lamp.cone {
             Some(cone) => (cone.axis.to_vector(), cone.inner_cosine, cone.outer_cosine),
             None => (DVec3::Z, 0.0, -2.0),

@@ -44,9 +44,11 @@ impl LocalLists {
             })
         });
         let volumes = volumes.collect();
-        let lights = lamps
-            .iter()
-            .map(|lamp| list(&|_, (centre, radius)| (centre - lamp.position_m).length() <= lamp.reach_m + radius));
+        let lights = lamps.iter().map(|lamp| {
+            list(&|other, (centre, radius)| {
+                Some(other) != lamp.own_volume && (centre - lamp.position_m).length() <= lamp.reach_m + radius
+            })
+        });
         let lights = lights.collect();
         Self { indices, volumes, lights }
     }
@@ -56,7 +58,7 @@ impl LocalLists {
         self.volumes[index].clone()
     }
 
-    /// Those within a local light's reach.
+    /// Those within a local light's reach, but for the volume that is the light.
     pub fn of_light(&self, index: usize) -> Range<usize> {
         self.lights[index].clone()
     }

@@ -6,6 +6,7 @@ mod camera;
 mod cloud_frame;
 mod clouds;
 mod emission;
+mod glow;
 mod local_lights;
 mod local_lists;
 mod observer;
