@@ -2,7 +2,8 @@
 //!
 //! # Method
 //! A phase function P is cut at a ceiling C: min(P, C) turns light away, and what rises above it, the peak, scarcely does. C is chosen so that the
-//! peak holds f = χ₂ of the light, as the similar medium of two moments leaves it unscattered (Joseph, Wiscombe & Weinman 1976).
+//! peak holds f = χ_n of the light, as the similar medium of n moments leaves it unscattered (Joseph, Wiscombe & Weinman 1976; Wiscombe 1977):
+//! the more moments who solves for the rest can follow, the narrower the peak.
 //! Light that only peaks have scattered keeps to the beam's path while its directions spread, so its Legendre moments after an optical
 //! depth τ are e^(-(1 - W p_l) τ), p_l the peak's moments and W the albedo (Goudsmit & Saunderson 1940, Physical Review 57, 24). What peaks scatter of it is,
 //! over the beam's irradiance and the scattering coefficient,
@@ -31,15 +32,16 @@ pub struct ForwardPeak {
     moments: Vec<f64>,
 }
 
-/// f, the share of scattered light that counts as unscattered: χ₂, and nothing where more light is turned back than goes on.
-pub fn share(phase: &PhaseFunction) -> f64 {
-    if phase.mean_cosine() > 0.0 { phase.legendre_moment(2).max(0.0) } else { 0.0 }
+/// f, the share of scattered light that counts as unscattered where so many moments of the rest are followed: the next one, and nothing where
+/// more light is turned back than goes on.
+pub fn share(phase: &PhaseFunction, moments: usize) -> f64 {
+    if phase.mean_cosine() > 0.0 { phase.legendre_moment(moments).max(0.0) } else { 0.0 }
 }
 
-/// Mean cosine of what is scattered besides; at least the -1/3 below which a function of two moments is negative somewhere.
-pub fn mean_cosine_of_rest(phase: &PhaseFunction) -> f64 {
-    let f = share(phase);
-    ((phase.mean_cosine() - f) / (1.0 - f)).max(-1.0 / 3.0)
+/// Moments of what is scattered besides.
+pub fn moments_of_rest<const MOMENTS: usize>(phase: &PhaseFunction) -> [f64; MOMENTS] {
+    let f = share(phase, MOMENTS);
+    std::array::from_fn(|degree| (phase.legendre_moment(degree) - f) / (1.0 - f))
 }
 
 /// A phase function between two angles that lie close together.
@@ -74,9 +76,9 @@ fn ceiling_per_sr(rings: &[Ring], below: f64) -> f64 {
 }
 
 impl ForwardPeak {
-    /// Of a phase function; one that turns back more light than goes on has none.
-    pub fn new(phase: &PhaseFunction) -> Self {
-        let f = share(phase);
+    /// Of a phase function, of whose rest so many moments are followed; one that turns back more light than goes on has none.
+    pub fn new(phase: &PhaseFunction, moments: usize) -> Self {
+        let f = share(phase, moments);
         if f <= 0.0 {
             return Self { ceiling_per_sr: f64::INFINITY, moments: vec![0.0; DEGREES] };
         }

@@ -16,7 +16,7 @@ const RINGS: [f64; 6] = [0.0, 4.0, 10.0, 20.0, 40.0, 90.0];
 fn walked(phase: &PhaseFunction, albedo: f64, depth: f64) -> Vec<(f64, f64)> {
     let mut random = Pcg64Mcg::seed_from_u64(5);
     let mut uniform = move || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-    let ceiling = ForwardPeak::new(phase).ceiling_per_sr();
+    let ceiling = ForwardPeak::new(phase, 2).ceiling_per_sr();
     let mut counts = vec![0; RINGS.len() - 1];
     for _ in 0..WALKS {
         let (mut at, mut mu, mut order) = (0.0, 1.0_f64, 0);
@@ -69,7 +69,7 @@ fn light_that_peaks_have_scattered_before_is_what_walks_find() {
         PhaseFunction::HenyeyGreensteinDraine { droplet_diameter_um: 16.0 },
     ];
     for phase in phases {
-        let peak = ForwardPeak::new(&phase);
+        let peak = ForwardPeak::new(&phase, 2);
         let mut told = false;
         for (albedo, depth) in [(1.0, 0.5), (1.0, 4.0), (0.6, 2.0)] {
             let walks = walked(&phase, albedo, depth);
@@ -95,7 +95,7 @@ fn light_that_peaks_have_scattered_before_is_what_walks_find() {
 fn a_peak_holds_the_share_that_the_similar_medium_leaves_unscattered() {
     for g in [0.3, 0.7, 0.95] {
         let phase = PhaseFunction::HenyeyGreenstein { g };
-        let peak = ForwardPeak::new(&phase);
+        let peak = ForwardPeak::new(&phase, 2);
         assert!((peak.moment(0) - g * g).abs() < 1e-6, "{g}: {}", peak.moment(0));
         assert!(peak.ceiling_per_sr() < phase.value(1.0) && peak.ceiling_per_sr() > phase.value(-1.0));
         // Negative control: moments of the whole phase function are others.
@@ -106,11 +106,11 @@ fn a_peak_holds_the_share_that_the_similar_medium_leaves_unscattered() {
 #[test]
 fn what_turns_light_back_has_no_forward_peak() {
     for phase in [PhaseFunction::Isotropic, PhaseFunction::Rayleigh, PhaseFunction::HenyeyGreenstein { g: -0.9 }] {
-        let peak = ForwardPeak::new(&phase);
-        assert_eq!(share(&phase), 0.0);
+        let peak = ForwardPeak::new(&phase, 2);
+        assert_eq!(share(&phase, 2), 0.0);
         assert!(peak.ceiling_per_sr() > phase.value(-1.0));
         assert_eq!(peak.scattered_again_per_sr(1.0, 3.0, &[1.0, 0.0, -1.0]), [0.0; 3]);
     }
     // Negative control.
-    assert!(share(&PhaseFunction::HenyeyGreenstein { g: 0.5 }) * 4.0 * PI > 3.0);
+    assert!(share(&PhaseFunction::HenyeyGreenstein { g: 0.5 }, 2) * 4.0 * PI > 3.0);
 }

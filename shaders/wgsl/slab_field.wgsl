@@ -5,13 +5,14 @@
 // Legend
 //   depth      optical depth of the similar medium, which scatters light from its line
 //   table      of one bank of fog and one source of light, a beam or the sky: per flux of 1 through a horizontal plane above
+//   way        the direction in which light goes: its elevation, and its azimuth from the beam's
 //
 // Definitions: LIGHT_COUNT.
 
 #import welkin::observer::LIGHT_COUNT
 
-// Bank by bank the lights' tables, then the sky's. In each, for depths above and depths below, which come faster: mean radiance,
-// net flux upwards and along; then for depths above alone the flux downwards on the ground.
+// Bank by bank the lights' tables, then the sky's. In each, for depths above, depths below, elevations and azimuths, ever faster, what
+// matter scatters; then for depths above alone the flux downwards on the ground, and for depths below alone the mean radiance upwards.
 @group(1) @binding(67) var<storage, read> slab_fields: array<vec4<f32>>;
 
 // welkin_lut::slab_field has the same numbers.
@@ -19,24 +20,26 @@ const DEPTHS: u32 = 24u;
 const NEAR_DEPTH: f32 = 0.05;
 // ln(1 + 60 / 0.05), from the first node to the last.
 const LOG_DEPTHS: f32 = 7.09090982;
-const OF_PAIR: u32 = 3u;
-const TABLE: u32 = (OF_PAIR * DEPTHS + 1u) * DEPTHS;
+const ELEVATIONS: u32 = 17u;
+const AZIMUTHS: u32 = 13u;
+const PAIRS: u32 = DEPTHS * DEPTHS;
+const BEAM_TABLE: u32 = PAIRS * ELEVATIONS * AZIMUTHS + 2u * DEPTHS;
+const SKY_TABLE: u32 = PAIRS * ELEVATIONS + 2u * DEPTHS;
+const PI: f32 = 3.14159265;
 
 // Sine of the elevation as which a lower light counts.
 const LOWEST_SUN: f32 = 0.02;
-
-struct SlabLight {
-    mean_radiance: vec3<f32>,
-    // Net flux upwards.
-    upward: vec3<f32>,
-    // Net flux along the layer, in the direction in which the beam goes.
-    along: vec3<f32>,
-}
 
 // Where a table is looked up: its nodes above and below, as whole and part.
 struct SlabSpot {
     above: f32,
     below: f32,
+}
+
+// The same of a way.
+struct SlabWay {
+    elevation: f32,
+    azimuth: f32,
 }
 
 fn node_of(depth: f32) -> f32 {
@@ -47,36 +50,75 @@ fn slab_spot(above: f32, below: f32) -> SlabSpot {
     return SlabSpot(node_of(above), node_of(below));
 }
 
-// The table of a light in a bank of fog; LIGHT_COUNT in its place stands for the sky.
-fn slab_table(bank: u32, light: u32) -> u32 {
-    return (bank * (LIGHT_COUNT + 1u) + light) * TABLE;
-}
-
-fn between_below(first: u32, t: f32) -> SlabLight {
-    return SlabLight(
-        mix(slab_fields[first].rgb, slab_fields[first + OF_PAIR].rgb, t),
-        mix(slab_fields[first + 1u].rgb, slab_fields[first + OF_PAIR + 1u].rgb, t),
-        mix(slab_fields[first + 2u].rgb, slab_fields[first + OF_PAIR + 2u].rgb, t),
+// Of light that goes up with this sine, at an azimuth of this cosine.
+fn slab_way(upward: f32, cos_azimuth: f32) -> SlabWay {
+    return SlabWay(
+        (asin(clamp(upward, -1.0, 1.0)) / PI + 0.5) * f32(ELEVATIONS - 1u),
+        acos(clamp(cos_azimuth, -1.0, 1.0)) / PI * f32(AZIMUTHS - 1u),
     );
 }
 
-fn slab_light(table: u32, spot: SlabSpot) -> SlabLight {
+fn bank_of(bank: u32) -> u32 {
+    return bank * (LIGHT_COUNT * BEAM_TABLE + SKY_TABLE);
+}
+
+// Where the table of a light in a bank of fog begins.
+fn beam_table(bank: u32, light: u32) -> u32 {
+    return bank_of(bank) + light * BEAM_TABLE;
+}
+
+fn sky_table(bank: u32) -> u32 {
+    return bank_of(bank) + LIGHT_COUNT * BEAM_TABLE;
+}
+
+// Between two texels so far apart.
+fn between_texels(first: u32, apart: u32, t: f32) -> vec3<f32> {
+    return mix(slab_fields[first].rgb, slab_fields[first + apart].rgb, t);
+}
+
+// Of the texels of a pair of depths, of which rows of elevations are so long.
+fn along_way(first: u32, way: SlabWay, row: u32) -> vec3<f32> {
+    let elevation = min(u32(way.elevation), ELEVATIONS - 2u);
+    let azimuth = min(u32(way.azimuth), AZIMUTHS - 2u);
+    let low = first + elevation * row;
+    if row == 1u {
+        return between_texels(low, row, way.elevation - f32(elevation));
+    }
+    return mix(
+        between_texels(low + azimuth, 1u, way.azimuth - f32(azimuth)),
+        between_texels(low + azimuth + row, 1u, way.azimuth - f32(azimuth)),
+        way.elevation - f32(elevation)
+    );
+}
+
+fn scattered_by_slab(table: u32, spot: SlabSpot, way: SlabWay, row: u32) -> vec3<f32> {
     let above = min(u32(spot.above), DEPTHS - 2u);
     let below = min(u32(spot.below), DEPTHS - 2u);
-    let first = table + OF_PAIR * (above * DEPTHS + below);
-    let near = between_below(first, spot.below - f32(below));
-    let far = between_below(first + OF_PAIR * DEPTHS, spot.below - f32(below));
-    let t = spot.above - f32(above);
-    return SlabLight(
-        mix(near.mean_radiance, far.mean_radiance, t),
-        mix(near.upward, far.upward, t),
-        mix(near.along, far.along, t),
-    );
+    let pair = ELEVATIONS * row;
+    let first = table + (above * DEPTHS + below) * pair;
+    let near = mix(along_way(first, way, row), along_way(first + pair, way, row), spot.below - f32(below));
+    let next = first + DEPTHS * pair;
+    let far = mix(along_way(next, way, row), along_way(next + pair, way, row), spot.below - f32(below));
+    return mix(near, far, spot.above - f32(above));
 }
 
-// Diffuse flux downwards on the ground below a depth.
-fn slab_on_ground(table: u32, spot: SlabSpot) -> vec3<f32> {
+// Radiance over the similar medium's scattering coefficient, of light of a beam and of the sky that was turned away before.
+fn scattered_of_beam(table: u32, spot: SlabSpot, way: SlabWay) -> vec3<f32> {
+    return scattered_by_slab(table, spot, way, AZIMUTHS);
+}
+
+fn scattered_of_sky(table: u32, spot: SlabSpot, way: SlabWay) -> vec3<f32> {
+    return scattered_by_slab(table, spot, way, 1u);
+}
+
+// Diffuse flux downwards on the ground below a depth; `row` as above.
+fn slab_on_ground(table: u32, spot: SlabSpot, row: u32) -> vec3<f32> {
     let above = min(u32(spot.above), DEPTHS - 2u);
-    let first = table + OF_PAIR * DEPTHS * DEPTHS + above;
-    return mix(slab_fields[first].rgb, slab_fields[first + 1u].rgb, spot.above - f32(above));
+    return between_texels(table + PAIRS * ELEVATIONS * row + above, 1u, spot.above - f32(above));
+}
+
+// Mean radiance upwards above a depth.
+fn slab_above(table: u32, spot: SlabSpot, row: u32) -> vec3<f32> {
+    let below = min(u32(spot.below), DEPTHS - 2u);
+    return between_texels(table + PAIRS * ELEVATIONS * row + DEPTHS + below, 1u, spot.below - f32(below));
 }

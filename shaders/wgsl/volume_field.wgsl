@@ -41,23 +41,21 @@ struct Volume {
     grid_size: vec3<u32>,
     // Where its samples begin.
     grid_first: u32,
-    // Extinction of the similar medium over the extinction, 1 - w f with f the second Legendre moment of the phase function: all
-    // but the scattering that hardly turns light from its line.
+    // Extinction of the similar medium over the extinction, 1 - w f with f the share of scattering that hardly turns light from its line:
+    // the forward peak's.
     similar_extinction: vec3<f32>,
     // 1 - f, the share of scattering that turns light from its line.
     similarity: f32,
-    // Mean cosine of that share.
-    reduced_cosine: f32,
     // 1 - the whole mean cosine.
     backward: f32,
     // Whether density is 1 all through a local volume.
     is_even: u32,
     // First block of its grid of light.
     first_block: u32,
-    // Of the light that it scatters once, what it scatters again, and again: over the light itself.
-    again: vec3<f32>,
     // Its table of lamps' scattered light: welkin::lamp_field.
     lamp_field: u32,
+    // Of the light that it scatters once, what it scatters again, and again: over the light itself.
+    again: vec3<f32>,
     // Its table of what its forward peak makes of a beam: welkin::beam_field.
     beam_field: u32,
     // Volumes that may stand between it and a light, in `local_lists`: where they begin, and how many.

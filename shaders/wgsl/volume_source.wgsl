@@ -28,7 +28,7 @@
 #endif
 #import welkin::observer::{observer, LIGHT_COUNT}
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
-#import welkin::slab_field::{slab_light, slab_spot, slab_table, LOWEST_SUN}
+#import welkin::slab_field::{beam_table, scattered_of_beam, scattered_of_sky, sky_table, slab_spot, slab_way, LOWEST_SUN}
 #import welkin::tables::table_sampler
 #import welkin::volume_field::{volumes, Place, FOG_COUNT}
 #import welkin::volume_grid::{block_uvw, spot_of}
@@ -145,10 +145,10 @@ struct Standing {
     nu: f32,
 }
 
-// Cosine of a view ray with the horizontal direction of a light, times the sine of the ray.
-fn along_light(standing: Standing) -> f32 {
-    let sine = sqrt(max(1.0 - standing.mu_s * standing.mu_s, 0.0));
-    return (standing.nu - standing.mu_s * standing.mu_view) / max(sine, 1e-3);
+// Cosine of the azimuth between a view ray and a light.
+fn cos_azimuth(standing: Standing) -> f32 {
+    let sines = (1.0 - standing.mu_s * standing.mu_s) * (1.0 - standing.mu_view * standing.mu_view);
+    return (standing.nu - standing.mu_s * standing.mu_view) / sqrt(max(sines, 1e-12));
 }
 
 // Radiance times b of light that a directional light and the sky have sent into a volume and that has been scattered since.
@@ -156,15 +156,11 @@ fn diffuse_source(piece: Piece, light: u32, standing: Standing, arriving: vec3<f
     let volume = volumes[piece.index];
     if piece.index < FOG_COUNT {
         let spot = slab_spot(depths.x, depths.z);
-        let of_beam = slab_light(slab_table(piece.index, light), spot);
-        let of_sky = slab_light(slab_table(piece.index, LIGHT_COUNT), spot);
+        let way = slab_way(-standing.mu_view, cos_azimuth(standing));
         let beam_flux = max(standing.mu_s, 0.0) * exp(-beam.a) * arriving;
-        let sky_flux = PI * around.above;
-        let mean = beam_flux * of_beam.mean_radiance + sky_flux * of_sky.mean_radiance;
-        let upward = beam_flux * of_beam.upward + sky_flux * of_sky.upward;
-        // Light goes on as it went: more of it comes from where the net flux comes from.
-        let against = upward * -standing.mu_view + beam_flux * of_beam.along * along_light(standing);
-        return max(mean + volume.reduced_cosine * 3.0 / FOUR_PI * against, vec3<f32>(0.0)) * volume.similarity;
+        let scattered = beam_flux * scattered_of_beam(beam_table(piece.index, light), spot, way)
+            + PI * around.above * scattered_of_sky(sky_table(piece.index), spot, way);
+        return volume.similarity * max(scattered, vec3<f32>(0.0));
     }
     let mean_depth = dot(beam.rgb, vec3<f32>(1.0 / 3.0));
     let left = exp(-beam.a) / (1.0 + 0.75 * volume.backward * mean_depth);

@@ -2,14 +2,14 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::STREAMS;
+use super::{MOMENTS, STREAMS};
 use crate::quadrature::{GaussNode, gauss_legendre};
 
 /// Radiances in the directions of a hemisphere.
 pub type Vector = [f64; STREAMS];
 
 /// Optical depth of what is doubled first, at most: light that it scatters twice is as small against that scattered once.
-const THIN: f64 = 1e-6;
+const THIN: f64 = 2e-5;
 
 /// What radiances in a hemisphere become.
 #[derive(Debug, Clone, Copy)]
@@ -62,35 +62,47 @@ impl Matrix {
     }
 }
 
-/// A part of radiance by azimuth φ from the beam.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Part {
-    /// Its mean.
-    Mean,
-    /// What goes as cos φ.
-    Cosine,
-}
-
-/// Directions of a hemisphere by Gauss's rule, and how matter scatters one part of radiance between them.
+/// Directions of a hemisphere by Gauss's rule, and how matter scatters what of radiance goes as cos(m φ) between them, φ the azimuth from the
+/// beam.
 #[derive(Debug, Clone)]
 pub struct Streams {
-    part: Part,
+    /// m.
+    mode: usize,
     cosines: Vector,
     weights: Vector,
     albedo: f64,
-    mean_cosine: f64,
+    /// (2l+1) times the moments of the phase function.
+    strengths: [f64; MOMENTS],
+    /// Λ_l^m at the cosines.
+    at_cosines: [[f64; MOMENTS]; STREAMS],
 }
 
-fn sine(cosine: f64) -> f64 {
-    (1.0 - cosine * cosine).sqrt()
+/// √((l-m)! / (l+m)!) P_l^m for all l: products of two of them are the modes of P_l of the angle between two directions.
+pub fn associated(mode: usize, cosine: f64) -> [f64; MOMENTS] {
+    let mut values = [0.0; MOMENTS];
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    values[mode] = (1..=mode).map(|k| sine * ((2 * k - 1) as f64 / (2 * k) as f64).sqrt()).product();
+    for l in mode + 1..MOMENTS {
+        let root = |l: usize| ((l * l - mode * mode) as f64).sqrt();
+        let before = if l >= 2 { values[l - 2] } else { 0.0 };
+        values[l] = ((2 * l - 1) as f64 * cosine * values[l - 1] - root(l - 1) * before) / root(l);
+    }
+    values
+}
+
+/// 1 or -1: Λ_l^m of a cosine and of minus that cosine are the same but for this sign.
+fn parity(mode: usize, degree: usize) -> f64 {
+    if (mode + degree).is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 impl Streams {
-    pub fn new(part: Part, albedo: f64, mean_cosine: f64) -> Self {
+    pub fn new(mode: usize, albedo: f64, moments: &[f64; MOMENTS]) -> Self {
         let nodes = gauss_legendre(STREAMS);
-        let [cosines, weights] = [|node: &GaussNode| node.abscissa, |node: &GaussNode| node.weight]
+        let [cosines, weights]: [Vector; 2] = [|node: &GaussNode| node.abscissa, |node: &GaussNode| node.weight]
             .map(|of| std::array::from_fn(|i| of(&nodes[i])));
-        Self { part, cosines, weights, albedo, mean_cosine }
+        let strengths = std::array::from_fn(|l| (2 * l + 1) as f64 * moments[l]);
+        let at_cosines = cosines.map(|cosine| associated(mode, cosine));
+        Self { mode, cosines, weights, albedo, strengths, at_cosines }
     }
 
     /// Mean of radiances over the hemisphere.
@@ -98,29 +110,38 @@ impl Streams {
         radiances.iter().zip(&self.weights).map(|(radiance, weight)| radiance * weight).sum()
     }
 
-    /// Flux of radiances through a horizontal plane.
+    /// Flux of radiances of mode 0 through a horizontal plane.
     pub fn flux(&self, radiances: &Vector) -> f64 {
         TAU * (0..STREAMS).map(|i| self.cosines[i] * self.weights[i] * radiances[i]).sum::<f64>()
     }
 
-    /// Flux of the part that goes as cos φ through a vertical plane that faces the beam's azimuth, from one hemisphere.
-    pub fn flux_along(&self, radiances: &Vector) -> f64 {
-        PI * (0..STREAMS).map(|i| sine(self.cosines[i]) * self.weights[i] * radiances[i]).sum::<f64>()
+    /// Means over all directions of radiances downwards and upwards, times Λ_l^m of the direction: from them
+    /// [`Self::scattered`] finds what goes where.
+    pub fn moments(&self, down: &Vector, up: &Vector) -> [f64; MOMENTS] {
+        std::array::from_fn(|l| {
+            let sum = |i: usize| self.weights[i] * self.at_cosines[i][l] * (down[i] + parity(self.mode, l) * up[i]);
+            0.5 * (0..STREAMS).map(sum).sum::<f64>()
+        })
     }
 
-    /// Share of a beam with a cosine that matter sends on into another, per optical depth and steradian; on which side of it says the
+    /// Of light with these moments, what matter sends into a direction, per scattering coefficient; `to` is Λ_l^m of its cosine downwards.
+    pub fn scattered(&self, moments: &[f64; MOMENTS], to: &[f64; MOMENTS]) -> f64 {
+        (self.mode..MOMENTS).map(|l| self.strengths[l] * moments[l] * to[l]).sum()
+    }
+
+    /// Share of radiance from one direction that matter sends on into another, per optical depth and steradian; on which side of it says the
     /// sign.
-    fn beam_scattered_per_sr(&self, side: f64, to: f64, from: f64) -> f64 {
-        self.albedo / (4.0 * PI)
-            * match self.part {
-                Part::Mean => 1.0 + 3.0 * self.mean_cosine * side * to * from,
-                Part::Cosine => 3.0 * self.mean_cosine * sine(to) * sine(from),
-            }
+    fn scattered_per_sr(&self, side: f64, to: &[f64; MOMENTS], from: &[f64; MOMENTS]) -> f64 {
+        let of_degree = |l: usize| {
+            let sign = if side < 0.0 { parity(self.mode, l) } else { 1.0 };
+            sign * self.strengths[l] * to[l] * from[l]
+        };
+        self.albedo / (4.0 * PI) * (self.mode..MOMENTS).map(of_degree).sum::<f64>()
     }
 
-    /// The same of radiance that goes as the part does: the mean of cos² φ is a half.
-    fn scattered_per_sr(&self, side: f64, to: f64, from: f64) -> f64 {
-        self.beam_scattered_per_sr(side, to, from) * if self.part == Part::Mean { 1.0 } else { 0.5 }
+    /// The same of a beam, whose modes but the first are twice as strong.
+    fn beam_scattered_per_sr(&self, side: f64, to: &[f64; MOMENTS], beam: &[f64; MOMENTS]) -> f64 {
+        self.scattered_per_sr(side, to, beam) * if self.mode == 0 { 1.0 } else { 2.0 }
     }
 
     /// How many times a layer that is thin enough is doubled, and its optical depth.
@@ -144,17 +165,47 @@ pub struct Layer {
     pub transmitted: Matrix,
 }
 
-impl Layer {
+/// A layer with the thinner ones that were doubled to it.
+#[derive(Debug, Clone)]
+pub struct Doubled {
+    depth: f64,
+    layers: Vec<Layer>,
+}
+
+impl Doubled {
     /// Of an optical depth.
     pub fn new(streams: &Streams, depth: f64) -> Self {
         let (doublings, thin) = Streams::thin(depth);
-        (0..doublings).fold(Self::thin(streams, thin), |layer, _| layer.doubled())
+        let first = Layer::thin(streams, thin);
+        let layers = std::iter::successors(Some(first), |layer| Some(layer.doubled())).take(doublings as usize + 1);
+        Self { depth, layers: layers.collect() }
     }
 
+    /// The whole layer.
+    pub fn whole(&self) -> &Layer {
+        self.layers.last().expect("there is one at least")
+    }
+
+    /// What it scatters out of a beam of this cosine, whose flux through a horizontal plane is 1 at the top.
+    pub fn source(&self, streams: &Streams, mu: f64) -> Source {
+        let (doublings, thin) = Streams::thin(self.depth);
+        let beam = associated(streams.mode, mu);
+        let of = |side: f64| {
+            std::array::from_fn(|i| {
+                streams.beam_scattered_per_sr(side, &streams.at_cosines[i], &beam) * lost(thin, mu) / streams.cosines[i]
+            })
+        };
+        let first = Source { down: of(1.0), up: of(-1.0) };
+        let lefts = (0..doublings).scan((-thin / mu).exp(), |left, _| Some(std::mem::replace(left, *left * *left)));
+        self.layers.iter().zip(lefts).fold(first, |source, (half, left)| source.doubled(half, left))
+    }
+}
+
+impl Layer {
     fn thin(streams: &Streams, depth: f64) -> Self {
-        let cosines = &streams.cosines;
+        let (cosines, at) = (&streams.cosines, &streams.at_cosines);
         let scattered = |side: f64, to: usize, from: usize| {
-            let per_sr = streams.scattered_per_sr(side, cosines[to], cosines[from]);
+            let per_sr = streams.scattered_per_sr(side, &at[to], &at[from]);
             TAU * streams.weights[from] * per_sr * lost(depth, cosines[from]) * cosines[from] / cosines[to]
         };
         let straight = |to: usize, from: usize| if to == from { (-depth / cosines[to]).exp() } else { 0.0 };
@@ -179,33 +230,19 @@ pub struct Source {
     pub up: Vector,
 }
 
-/// That of a layer of an optical depth under a beam of this cosine, whose flux through a horizontal plane is 1 at the top.
-pub fn source(streams: &Streams, depth: f64, mu: f64) -> Source {
-    let (doublings, thin) = Streams::thin(depth);
-    let of = |side: f64| {
-        std::array::from_fn(|i| {
-            let cosine = streams.cosines[i];
-            streams.beam_scattered_per_sr(side, cosine, mu) * lost(thin, mu) / cosine
-        })
-    };
-    let mut layer = Layer::thin(streams, thin);
-    let mut source = Source { down: of(1.0), up: of(-1.0) };
-    let mut left = (-thin / mu).exp();
-    for _ in 0..doublings {
-        // The lower half lies under what the upper one leaves of the beam.
-        let lower_up = source.up.map(|radiance| left * radiance);
-        let returned = layer.reflected.times(&lower_up);
-        let arriving = std::array::from_fn(|i| source.down[i] + returned[i]);
-        let down = layer.reflected.product(&layer.reflected).solve_from_identity(&arriving);
-        let up = layer.reflected.times(&down);
+impl Source {
+    /// That of two layers, of which each scatters so and the upper one leaves so much of the beam.
+    fn doubled(&self, half: &Layer, left: f64) -> Self {
+        let lower_up = self.up.map(|radiance| left * radiance);
+        let returned = half.reflected.times(&lower_up);
+        let arriving = std::array::from_fn(|i| self.down[i] + returned[i]);
+        let down = half.reflected.product(&half.reflected).solve_from_identity(&arriving);
+        let up = half.reflected.times(&down);
         let up: Vector = std::array::from_fn(|i| up[i] + lower_up[i]);
-        let (passed_down, passed_up) = (layer.transmitted.times(&down), layer.transmitted.times(&up));
-        source = Source {
-            down: std::array::from_fn(|i| passed_down[i] + left * source.down[i]),
-            up: std::array::from_fn(|i| source.up[i] + passed_up[i]),
-        };
-        layer = layer.doubled();
-        left *= left;
+        let (passed_down, passed_up) = (half.transmitted.times(&down), half.transmitted.times(&up));
+        Self {
+            down: std::array::from_fn(|i| passed_down[i] + left * self.down[i]),
+            up: std::array::from_fn(|i| self.up[i] + passed_up[i]),
+        }
     }
-    source
 }

@@ -5,19 +5,27 @@
 //! are found by doubling, and the slabs above and below a point, the latter with the ground, are joined there by adding
 //! (van de Hulst 1963; Hansen & Travis 1974, Space Science Reviews 16, section 3), with [`STREAMS`] directions in each hemisphere.
 //!
-//! The phase function has two moments, 1 and g: that of the similar medium which stands for one that scatters forward (Joseph,
-//! Wiscombe & Weinman 1976). Of radiance two parts are followed, each by itself: the mean over azimuths, of which means and vertical fluxes
-//! are made, and what goes as the cosine of the azimuth from the beam, of which the flux along the slab is. A ground that sends light up evenly takes
-//! the latter and returns nothing.
+//! The phase function has [`MOMENTS`] moments: those of the similar medium which stands for one that scatters forward (Joseph,
+//! Wiscombe & Weinman 1976; Wiscombe 1977). What of radiance goes as the cosine of a multiple of the azimuth from the beam is followed
+//! by itself, [`MODES`] of them (Chandrasekhar 1960, section 48). A ground that sends light up evenly takes all but the mean over azimuths.
+//! Of the light at a point a table keeps what matter there scatters of it into each direction.
 
 mod layer;
 
 use std::f64::consts::PI;
 
-use layer::{Layer, Matrix, Part, Source, Streams, Vector, source};
+use layer::{Doubled, Layer, Matrix, Source, Streams, Vector, associated};
 
 /// Directions in each hemisphere.
 pub const STREAMS: usize = 8;
+/// Moments of a phase function.
+pub const MOMENTS: usize = 2 * STREAMS;
+/// Multiples of the azimuth, from 0.
+pub const MODES: usize = 12;
+/// Elevations of a table, from straight down to straight up.
+pub const ELEVATIONS: usize = 17;
+/// Azimuths of a beam's table, from the beam's own to the opposite.
+pub const AZIMUTHS: usize = 13;
 /// Optical depths of a table along each axis.
 pub const DEPTHS: usize = 24;
 /// Depths are nodes of ln(1 + depth / this).
@@ -35,8 +43,8 @@ pub fn node_depth(node: usize) -> f64 {
 pub struct SlabMatter {
     /// Single-scattering albedo, in [0, 1].
     pub albedo: f64,
-    /// Mean cosine of scattering, in (-1/3, 1): beyond, a phase function of two moments is negative somewhere.
-    pub mean_cosine: f64,
+    /// Legendre moments of the phase function, the first of which is 1.
+    pub moments: [f64; MOMENTS],
     /// Albedo of the ground, in [0, 1].
     pub ground_albedo: f64,
 }
@@ -50,37 +58,51 @@ pub enum SlabLight {
     Sky,
 }
 
+/// The elevation of a table's node, rad.
+pub fn node_elevation_rad(node: usize) -> f64 {
+    PI * (node as f64 / (ELEVATIONS - 1) as f64 - 0.5)
+}
+
+/// The azimuth of a table's node, rad.
+pub fn node_azimuth_rad(node: usize) -> f64 {
+    PI * node as f64 / (AZIMUTHS - 1) as f64
+}
+
 /// Diffuse light at a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SlabField {
-    /// Mean radiance over all directions, 1/sr.
-    pub mean_radiance: f64,
     /// Flux downwards through a horizontal plane.
     pub downward: f64,
     /// Flux upwards.
     pub upward: f64,
-    /// Net flux along the slab, in the direction in which the beam goes.
-    pub along: f64,
+    /// Mean radiance of the directions upwards, 1/sr.
+    pub mean_upward: f64,
+    /// Radiance that matter sends on per scattering coefficient, 1/sr: for elevations of the direction in which it goes, and then azimuths, which
+    /// come faster. Of the sky's light there is one azimuth.
+    pub scattered_per_sr: Vec<f64>,
 }
 
-/// Layers of all depths of a table, for one part of radiance.
+/// Layers of all depths of a table, for one mode.
 #[derive(Debug, Clone)]
 struct Layers {
     streams: Streams,
-    layers: Vec<Layer>,
+    layers: Vec<Doubled>,
+    /// Λ_l^m at a table's elevations, of the cosine downwards.
+    at_elevations: Vec<[f64; MOMENTS]>,
 }
 
 impl Layers {
-    fn new(part: Part, matter: &SlabMatter) -> Self {
-        let streams = Streams::new(part, matter.albedo.clamp(0.0, 1.0), matter.mean_cosine);
-        let layers = (0..DEPTHS).map(|node| Layer::new(&streams, node_depth(node))).collect();
-        Self { streams, layers }
+    fn new(mode: usize, matter: &SlabMatter) -> Self {
+        let streams = Streams::new(mode, matter.albedo.clamp(0.0, 1.0), &matter.moments);
+        let layers = (0..DEPTHS).map(|node| Doubled::new(&streams, node_depth(node))).collect();
+        let at_elevations = (0..ELEVATIONS).map(|node| associated(mode, -node_elevation_rad(node).sin())).collect();
+        Self { streams, layers, at_elevations }
     }
 
     /// What each layer scatters out of a beam whose flux is 1 at its top.
     fn sources(&self, light: SlabLight) -> Vec<Source> {
         match light {
-            SlabLight::Beam(mu) => (0..DEPTHS).map(|node| source(&self.streams, node_depth(node), mu)).collect(),
+            SlabLight::Beam(mu) => self.layers.iter().map(|layer| layer.source(&self.streams, mu)).collect(),
             SlabLight::Sky => vec![Source::default(); DEPTHS],
         }
     }
@@ -90,57 +112,52 @@ impl Layers {
 #[derive(Debug, Clone)]
 pub struct Slabs {
     matter: SlabMatter,
-    mean: Layers,
-    cosine: Layers,
+    modes: Vec<Layers>,
 }
 
 impl Slabs {
     /// Of this matter, with all depths of a table.
     pub fn new(matter: SlabMatter) -> Self {
-        Self { matter, mean: Layers::new(Part::Mean, &matter), cosine: Layers::new(Part::Cosine, &matter) }
+        Self { matter, modes: (0..MODES).map(|mode| Layers::new(mode, &matter)).collect() }
     }
 
     /// The table of a light: the diffuse field below one node's depth and above another's, the latter fastest.
     pub fn table(&self, light: SlabLight) -> Vec<SlabField> {
-        let (sources, of_cosine) = (self.mean.sources(light), self.cosine.sources(light));
-        let grounds: Vec<_> = (0..DEPTHS).map(|node| self.on_ground(node, &sources[node], light)).collect();
-        let mut table = Vec::with_capacity(DEPTHS * DEPTHS);
-        for (node, (above, source)) in self.mean.layers.iter().zip(&sources).enumerate() {
-            let entering = match light {
-                SlabLight::Beam(_) => source.down,
-                SlabLight::Sky => above.transmitted.times(&[1.0 / PI; STREAMS]),
-            };
-            let beam = beam_left(light, node_depth(node));
-            for (below, (reflected, upward)) in grounds.iter().enumerate() {
-                let (down, up) = joined(above, &entering, reflected, &upward.map(|radiance| beam * radiance));
-                let sum: Vector = std::array::from_fn(|i| 0.5 * (up[i] + down[i]));
-                let streams = &self.mean.streams;
-                table.push(SlabField {
-                    mean_radiance: streams.mean(&sum),
-                    downward: streams.flux(&down),
-                    upward: streams.flux(&up),
-                    along: self.along(node, below, &of_cosine, beam),
-                });
+        let azimuths = if light == SlabLight::Sky { 1 } else { AZIMUTHS };
+        let dark = SlabField {
+            downward: 0.0,
+            upward: 0.0,
+            mean_upward: 0.0,
+            scattered_per_sr: vec![0.0; ELEVATIONS * azimuths],
+        };
+        let mut table = vec![dark; DEPTHS * DEPTHS];
+        let modes = if light == SlabLight::Sky { &self.modes[..1] } else { &self.modes };
+        for (mode, layers) in modes.iter().enumerate() {
+            let sources = layers.sources(light);
+            let grounds: Vec<_> = (0..DEPTHS).map(|node| self.on_ground(layers, mode, node, &sources[node], light)).collect();
+            let cosines: Vec<f64> = (0..azimuths).map(|node| (mode as f64 * node_azimuth_rad(node)).cos()).collect();
+            for (index, field) in table.iter_mut().enumerate() {
+                let (above, below) = (index / DEPTHS, index % DEPTHS);
+                let layer = layers.layers[above].whole();
+                let entering = match light {
+                    SlabLight::Beam(_) => sources[above].down,
+                    SlabLight::Sky => layer.transmitted.times(&[1.0 / PI; STREAMS]),
+                };
+                let (reflected, upward) = &grounds[below];
+                let beam = beam_left(light, node_depth(above));
+                let (down, up) = joined(layer, &entering, reflected, &upward.map(|radiance| beam * radiance));
+                field.add(layers, mode, &down, &up, &cosines);
             }
         }
         table
     }
 
-    /// Net flux along the slab below one node's depth and above another's.
-    fn along(&self, above: usize, below: usize, sources: &[Source], beam: f64) -> f64 {
-        if beam == 0.0 {
-            return 0.0;
-        }
-        let Layers { streams, layers } = &self.cosine;
-        let sent = sources[below].up.map(|radiance| beam * radiance);
-        let (down, up) = joined(&layers[above], &sources[above].down, &layers[below].reflected, &sent);
-        streams.flux_along(&down) + streams.flux_along(&up)
-    }
-
     /// Reflection of a layer that lies on the ground, and what it sends up of a beam whose flux is 1 at its top.
-    fn on_ground(&self, node: usize, source: &Source, light: SlabLight) -> (Matrix, Vector) {
-        let Layers { streams, layers } = &self.mean;
-        let (layer, albedo) = (&layers[node], self.matter.ground_albedo);
+    fn on_ground(&self, layers: &Layers, mode: usize, node: usize, source: &Source, light: SlabLight) -> (Matrix, Vector) {
+        let (streams, layer, albedo) = (&layers.streams, layers.layers[node].whole(), self.matter.ground_albedo);
+        if mode > 0 {
+            return (layer.reflected, source.up);
+        }
         // The ground sends up its albedo of the flux that arrives, evenly; the layer returns some of that.
         let flux_of_even = streams.flux(&layer.reflected.times(&[1.0; STREAMS]));
         let per_flux = albedo / PI / (1.0 - albedo / PI * flux_of_even);
@@ -150,6 +167,22 @@ impl Slabs {
         let arriving = streams.flux(&source.down) + beam_left(light, node_depth(node));
         let sent = std::array::from_fn(|i| source.up[i] + risen[i] * per_flux * arriving);
         (layer.reflected.sum(&returned), sent)
+    }
+}
+
+impl SlabField {
+    /// Adds radiances of a mode, of whose azimuths these are the cosines.
+    fn add(&mut self, layers: &Layers, mode: usize, down: &Vector, up: &Vector, cosines: &[f64]) {
+        if mode == 0 {
+            (self.downward, self.upward) = (layers.streams.flux(down), layers.streams.flux(up));
+            self.mean_upward = layers.streams.mean(up);
+        }
+        let moments = layers.streams.moments(down, up);
+        let rows = self.scattered_per_sr.chunks_exact_mut(cosines.len()).zip(&layers.at_elevations);
+        for (row, at_elevation) in rows {
+            let scattered = layers.streams.scattered(&moments, at_elevation);
+            row.iter_mut().zip(cosines).for_each(|(value, cosine)| *value += scattered * cosine);
+        }
     }
 }
 

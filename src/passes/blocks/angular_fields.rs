@@ -9,7 +9,7 @@ use welkin_lut::lamp_field::LampField;
 use welkin_lut::volume::{Volume, VolumeParameters};
 use welkin_lut::{BAND_COUNT, Bands, PhaseFunction};
 
-use super::volumes::{albedo, mean_chord_m};
+use super::volumes::{albedo, followed_moments, mean_chord_m};
 use crate::plan::{CloudScattering, Facts};
 
 /// Depths of a table: WGSL `DEPTHS`.
@@ -26,8 +26,8 @@ pub(super) const NO_FIELD: u32 = u32::MAX;
 enum Source {
     /// A lamp within a ball of so many optical depths, which stands for the form of the matter.
     Lamp { radius: Bands },
-    /// A beam.
-    Beam,
+    /// A beam, of what turns away from which so many moments are followed.
+    Beam { moments: usize },
 }
 
 /// What a table depends on.
@@ -69,6 +69,10 @@ fn matter(volume: &Volume, source: Source) -> Matter {
     Matter { phase: volume.phase.clone(), albedo: albedo(volume), source }
 }
 
+fn in_beam(volume: &Volume) -> Matter {
+    matter(volume, Source::Beam { moments: followed_moments(volume) })
+}
+
 fn around_lamp(volume: &Volume) -> Matter {
     matter(volume, Source::Lamp { radius: radius(volume) })
 }
@@ -84,9 +88,11 @@ impl Field {
         let albedo = matter.albedo[band];
         match matter.source {
             Source::Lamp { radius } => Self::Lamp(LampField::new(&matter.phase, albedo, radius[band])),
-            Source::Beam => {
-                Self::Beam { peak: ForwardPeak::new(&matter.phase), share: forward_peak::share(&matter.phase), albedo }
-            }
+            Source::Beam { moments } => Self::Beam {
+                peak: ForwardPeak::new(&matter.phase, moments),
+                share: forward_peak::share(&matter.phase, moments),
+                albedo,
+            },
         }
     }
 
@@ -115,7 +121,7 @@ impl Field {
 fn are_alike(matter: &Matter, a: usize, b: usize) -> bool {
     let same_ball = match matter.source {
         Source::Lamp { radius } => radius[a] == radius[b],
-        Source::Beam => true,
+        Source::Beam { .. } => true,
     };
     same_ball && matter.albedo[a] == matter.albedo[b]
 }
@@ -144,7 +150,7 @@ impl AngularFields {
         let scattering = || facts.volumes.iter().filter(|volume| volume.scatters());
         let mut all: Vec<Matter> = Vec::new();
         if !facts.lights.is_empty() && facts.cloud_scattering() != CloudScattering::Single {
-            all.extend(scattering().map(|volume| matter(volume, Source::Beam)));
+            all.extend(scattering().map(|volume| in_beam(volume)));
         }
         if super::local_light_count(facts) > 0 {
             all.extend(scattering().map(|volume| around_lamp(volume)));
@@ -172,7 +178,7 @@ impl AngularFields {
 
     /// The number of its table of a beam's light.
     pub(super) fn in_beam(&self, volume: &Volume) -> u32 {
-        self.of(&matter(volume, Source::Beam))
+        self.of(&in_beam(volume))
     }
 
     /// The number of the table around a lamp of a layer of clouds.

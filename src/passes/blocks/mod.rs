@@ -200,12 +200,11 @@ mod tests {
                 grid_first,
                 similar_extinction,
                 similarity,
-                reduced_cosine,
                 backward,
                 is_even,
                 first_block,
-                again,
                 lamp_field,
+                again,
                 beam_field,
                 occluders_first,
                 occluder_count

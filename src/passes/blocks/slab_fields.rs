@@ -1,7 +1,7 @@
 //! Light that fog scatters again and again, as tables for the shaders: for each bank one for each light and one for the sky.
 
-use welkin_lut::forward_peak::mean_cosine_of_rest;
-use welkin_lut::slab_field::{DEPTHS, SlabField, SlabLight, SlabMatter, Slabs};
+use welkin_lut::forward_peak::moments_of_rest;
+use welkin_lut::slab_field::{AZIMUTHS, DEPTHS, ELEVATIONS, SlabField, SlabLight, SlabMatter, Slabs};
 use welkin_lut::volume::Volume;
 use welkin_lut::{BAND_COUNT, Bands};
 
@@ -13,10 +13,12 @@ const COSINES: usize = 12;
 /// A lower light counts as this high.
 const LOWEST: f64 = 0.02;
 
-/// Texels of a pair of depths: mean radiance, net flux upwards and along.
-const OF_PAIR: usize = 3;
-/// Texels of a table: those of all pairs of depths, then the flux downwards on the ground below each depth.
-const TABLE_TEXELS: usize = (OF_PAIR * DEPTHS + 1) * DEPTHS;
+/// Texels of a table: those of all pairs of depths, then the flux downwards on the ground below each depth and the mean
+/// radiance upwards above it.
+fn table_texels(light: SlabLight) -> usize {
+    let azimuths = if light == SlabLight::Sky { 1 } else { AZIMUTHS };
+    (DEPTHS * ELEVATIONS * azimuths + 2) * DEPTHS
+}
 
 type Texels = Vec<[f32; 4]>;
 
@@ -38,10 +40,10 @@ struct Bank {
 pub struct SlabFields(Vec<Bank>);
 
 fn matter(fog: &Volume, ground_albedo: Bands) -> Matter {
-    let (similar, mean_cosine) = (Similar::new(fog), mean_cosine_of_rest(&fog.phase));
+    let (similar, moments) = (Similar::new(fog), moments_of_rest(&fog.phase));
     Matter(std::array::from_fn(|band| SlabMatter {
         albedo: similar.albedo[band],
-        mean_cosine,
+        moments,
         ground_albedo: ground_albedo[band],
     }))
 }
@@ -64,19 +66,16 @@ impl Bank {
     }
 
     fn texels(&self, light: SlabLight) -> Texels {
-        let mut texels = vec![[0.0; 4]; TABLE_TEXELS];
+        let mut texels = vec![[0.0; 4]; table_texels(light)];
         let mut tables: Vec<Vec<SlabField>> = Vec::with_capacity(BAND_COUNT);
         for (band, slabs) in self.slabs.iter().enumerate() {
             let same = self.matter.0[..band].iter().position(|other| *other == self.matter.0[band]);
             let table = same.map_or_else(|| slabs.table(light), |other| tables[other].clone());
-            for (pair, field) in table.iter().enumerate() {
-                let values = [field.mean_radiance, field.upward - field.downward, field.along];
-                let own = &mut texels[OF_PAIR * pair..][..OF_PAIR];
-                own.iter_mut().zip(values).for_each(|(texel, value)| texel[band] = value as f32);
-            }
-            for above in 0..DEPTHS {
-                texels[OF_PAIR * DEPTHS * DEPTHS + above][band] = table[above * DEPTHS].downward as f32;
-            }
+            let scattered = table.iter().flat_map(|field| field.scattered_per_sr.iter());
+            let on_ground = (0..DEPTHS).map(|above| &table[above * DEPTHS].downward);
+            let above = table[..DEPTHS].iter().map(|field| &field.mean_upward);
+            let values = scattered.chain(on_ground).chain(above);
+            texels.iter_mut().zip(values).for_each(|(texel, value)| texel[band] = *value as f32);
             tables.push(table);
         }
         texels

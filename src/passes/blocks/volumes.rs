@@ -1,9 +1,8 @@
 //! Fog and local volumes as the shaders read them.
 
 use bytemuck::{Pod, Zeroable};
-use welkin_lut::forward_peak;
 use welkin_lut::volume::{Volume, VolumeForm, VolumeParameters};
-use welkin_lut::{Bands, PhaseFunction};
+use welkin_lut::{Bands, PhaseFunction, forward_peak, slab_field};
 
 use super::angular_fields::AngularFields;
 use super::atmosphere::{PhaseLobeBlock, scaled_lobes};
@@ -37,16 +36,15 @@ pub struct VolumeBlock {
     pub(super) grid_first: u32,
     pub(super) similar_extinction: [f32; 3],
     pub(super) similarity: f32,
-    pub(super) reduced_cosine: f32,
     pub(super) backward: f32,
     pub(super) is_even: u32,
     pub(super) first_block: u32,
-    pub(super) again: [f32; 3],
     pub(super) lamp_field: u32,
+    pub(super) again: [f32; 3],
     pub(super) beam_field: u32,
     pub(super) occluders_first: u32,
     pub(super) occluder_count: u32,
-    pub(super) padding: u32,
+    pub(super) padding: [u32; 2],
 }
 
 /// WGSL `VolumePhase`.
@@ -73,6 +71,17 @@ pub(super) fn albedo(volume: &Volume) -> Bands {
     )
 }
 
+/// Moments of a volume's phase function with which its light is followed once the forward peak has been taken out: as many as
+/// slabs are solved with in fog, and in local volumes the two that a mean chord can do with.
+pub(super) fn followed_moments(volume: &Volume) -> usize {
+    if volume.altitudes_m().is_some() { slab_field::MOMENTS } else { 2 }
+}
+
+/// Share of scattered light that counts as unscattered: that of the forward peak.
+fn peak_share(volume: &Volume) -> f64 {
+    forward_peak::share(&volume.phase, followed_moments(volume))
+}
+
 /// The medium without the scattering that hardly turns light from its line (Joseph, Wiscombe & Weinman 1976).
 pub(super) struct Similar {
     /// Its extinction over that of the volume, 1 where there is none.
@@ -83,7 +92,7 @@ pub(super) struct Similar {
 
 impl Similar {
     pub(super) fn new(volume: &Volume) -> Self {
-        let (forward, albedo) = (forward_peak::share(&volume.phase), albedo(volume));
+        let (forward, albedo) = (peak_share(volume), albedo(volume));
         let extinction = albedo.map(|albedo| 1.0 - forward * albedo);
         Self { extinction, albedo: std::array::from_fn(|band| (1.0 - forward) * albedo[band] / extinction[band]) }
     }
@@ -130,8 +139,7 @@ impl VolumeBlock {
             grid_size: volume.grid.as_ref().map_or([0; 3], |grid| grid.size().map(|n| n as u32)),
             grid_first,
             similar_extinction: vec3(similar.extinction),
-            similarity: (1.0 - forward_peak::share(&volume.phase)) as f32,
-            reduced_cosine: forward_peak::mean_cosine_of_rest(&volume.phase) as f32,
+            similarity: (1.0 - peak_share(volume)) as f32,
             backward: (1.0 - volume.phase.mean_cosine()) as f32,
             is_even: u32::from(is_even),
             again: vec3(again(volume, &similar)),
@@ -140,7 +148,7 @@ impl VolumeBlock {
             occluder_count: occluders.len() as u32,
             lamp_field: fields.around_lamp(volume),
             beam_field: fields.in_beam(volume),
-            padding: 0,
+            padding: [0; 2],
         }
     }
 }
