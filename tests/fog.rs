@@ -121,6 +121,7 @@ fn assert_as_traced(cases: &[(Bank, f64)], other: impl Fn(Bank) -> Bank) {
         let Bank { albedo, asymmetry, sun_azimuth_deg, camera_altitude_m } = bank;
         let which =
             format!("albedo {albedo}, g {asymmetry}, sun at {sun_azimuth_deg}°, camera at {camera_altitude_m} m");
+        println!("{which}: off by {} beyond three errors", off(bank.traced()));
         assert!(off(bank.traced()) < bound, "{which}: {ours} against {:?}", bank.traced());
         assert!(off(other(bank).traced()) > bound, "{which}: the control, another bank, is told apart");
     }
@@ -137,7 +138,7 @@ fn a_sunlit_bank_is_as_bright_as_the_path_tracer_finds_whatever_it_absorbs() {
 fn a_bank_that_scatters_forward_is_as_bright_as_the_path_tracer_finds_on_either_side_of_the_sun() {
     // docs/fog.md has the errors of single pixels; means err by less.
     let bank = |(sun_azimuth_deg, camera_altitude_m)| {
-        (Bank { albedo: 1.0, asymmetry: 0.7, sun_azimuth_deg, camera_altitude_m }, 0.05)
+        (Bank { albedo: 1.0, asymmetry: 0.7, sun_azimuth_deg, camera_altitude_m }, 0.02)
     };
     let cases = [(30.0, 20.0), (140.0, 20.0), (180.0, 400.0)].map(bank);
     assert_as_traced(&cases, |bank| Bank { asymmetry: bank.asymmetry - 0.25, ..bank });

@@ -134,14 +134,16 @@ pub struct Lobe {
 }
 
 impl From<PhaseLobe> for Lobe {
-    fn from(PhaseLobe { scale_per_sr, quadratic, gap, slope, exponent }: PhaseLobe) -> Self {
+    fn from(lobe: PhaseLobe) -> Self {
+        let (gap, slope) = lobe.about_forward();
+        let PhaseLobe { scale_per_sr, quadratic, exponent, .. } = lobe;
         Self { scale_per_sr, quadratic, gap, slope, exponent }
     }
 }
 
 impl From<Lobe> for PhaseLobe {
     fn from(Lobe { scale_per_sr, quadratic, gap, slope, exponent }: Lobe) -> Self {
-        Self { scale_per_sr, quadratic, gap, slope, exponent }
+        Self { scale_per_sr, quadratic, exponent, ..Self::ABSENT }.from_forward(gap, slope)
     }
 }
 

@@ -21,8 +21,9 @@ pub(super) fn uniform_block(parameters: &SkyParameters) -> Vec<u8> {
         let lobes = parameters.scatterers.get(scatterer).map(|s| s.phase_function.as_slice()).unwrap_or_default();
         for index in 0..LOBES {
             let lobe = lobes.get(index).copied().unwrap_or(PhaseLobe::ABSENT.into());
-            let (gap, slope, peak_nu) = PhaseLobe::from(lobe).from_peak();
-            for value in [lobe.scale_per_sr, lobe.quadratic, gap, slope, lobe.exponent, peak_nu, 0.0, 0.0] {
+            let lobe = PhaseLobe::from(lobe);
+            let gap = f64::from(lobe.gap_in_single_precision());
+            for value in [lobe.scale_per_sr, lobe.quadratic, gap, lobe.slope, lobe.exponent, lobe.peak_nu, 0.0, 0.0] {
                 bytes.extend((value as f32).to_le_bytes());
             }
         }

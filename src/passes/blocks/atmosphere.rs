@@ -67,14 +67,13 @@ impl PhaseLobeBlock {
 
 impl From<PhaseLobe> for PhaseLobeBlock {
     fn from(lobe: PhaseLobe) -> Self {
-        let (gap, slope, peak_nu) = lobe.from_peak();
         Self {
             scale_per_sr: lobe.scale_per_sr as f32,
             quadratic: lobe.quadratic as f32,
-            gap: gap as f32,
-            slope: slope as f32,
+            gap: lobe.gap_in_single_precision(),
+            slope: lobe.slope as f32,
             exponent: lobe.exponent as f32,
-            peak_nu: peak_nu as f32,
+            peak_nu: lobe.peak_nu as f32,
             padding: [0.0; 2],
         }
     }
