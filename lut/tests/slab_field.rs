@@ -7,7 +7,8 @@ use rand_pcg::Pcg64Mcg;
 use welkin_lut::PhaseFunction;
 use welkin_lut::forward_peak::{moments_of_rest, share};
 use welkin_lut::slab_field::{
-    AZIMUTHS, DEPTHS, ELEVATIONS, MOMENTS, SlabField, SlabLight, SlabMatter, Slabs, node_azimuth_rad, node_depth, node_elevation_rad,
+    AZIMUTHS, DEPTHS, ELEVATIONS, MOMENTS, SlabField, SlabLight, SlabMatter, Slabs, node_azimuth_rad, node_depth,
+    node_elevation_rad,
 };
 
 const WALKS: usize = 200_000;
@@ -137,10 +138,13 @@ fn what_a_slab_scatters_is_what_walks_find() {
         let [walk_above, walk_below] = [above, below].map(|node| node_depth(node) / (1.0 - albedo * f));
         let walks = walked(&phase, albedo, ground_albedo, mu, walk_above, walk_below);
         let misses = |field: &SlabField| {
-            let looks = LOOKS.map(|(elevation, azimuth)| (1.0 - f) * field.scattered_per_sr[elevation * AZIMUTHS + azimuth]);
+            let looks =
+                LOOKS.map(|(elevation, azimuth)| (1.0 - f) * field.scattered_per_sr[elevation * AZIMUTHS + azimuth]);
             let ours = looks.into_iter().chain([field.downward, field.upward]);
             // Grazing crossings make distributions long-tailed: 1.5 % besides three standard errors.
-            ours.zip(&walks).filter(|(ours, (mean, error))| (ours - mean).abs() > 3.0 * error + 0.015 * mean.abs()).count()
+            ours.zip(&walks)
+                .filter(|(ours, (mean, error))| (ours - mean).abs() > 3.0 * error + 0.015 * mean.abs())
+                .count()
         };
         assert_eq!(misses(at(&table, above, below)), 0, "{phase:?}: {:?} against {walks:?}", at(&table, above, below));
         let other = at(&table, above + 1, below);
@@ -150,6 +154,11 @@ fn what_a_slab_scatters_is_what_walks_find() {
 
 #[test]
 fn directions_of_a_table_end_at_the_vertical_and_at_the_opposite_azimuth() {
-    let ends = [node_elevation_rad(0), node_elevation_rad(ELEVATIONS - 1), node_azimuth_rad(0), node_azimuth_rad(AZIMUTHS - 1)];
+    let ends = [
+        node_elevation_rad(0),
+        node_elevation_rad(ELEVATIONS - 1),
+        node_azimuth_rad(0),
+        node_azimuth_rad(AZIMUTHS - 1),
+    ];
     assert!(ends.iter().zip([-0.5 * PI, 0.5 * PI, 0.0, PI]).all(|(end, exact)| (end - exact).abs() < 1e-12));
 }

@@ -25,6 +25,11 @@
 }
 #import welkin::volume_field::{fog_density, place_of, volumes, Place, FOG_COUNT, VOLUME_COUNT}
 #import welkin::volume_source::{from_lights, seen_whole, Arriving, Piece, Stretch}
+#if FOG_COUNT > 0
+#import welkin::observer::observer
+#import welkin::slab_field::LOWEST_SUN
+#import welkin::volume_source::similar_depths
+#endif
 #if LOCAL_LIGHT_COUNT > 0
 #import welkin::cluster_members::{lamps_of, near_lamps_of}
 #import welkin::lamp_source::{from_local_light, ALL, NEAR}
@@ -51,6 +56,9 @@ const MAX_STEPS: u32 = #{VOLUME_MAX_STEPS}u;
 const STEP_GROWTH: f32 = #{VOLUME_GROWTH_PERMILLE}.0 * 0.001;
 // Longest step in optical depths, while little is hidden.
 const STEP_DEPTH: f32 = 0.7;
+// By how much the depth to a light may change within a step at the top of fog, and by which share of the depth to it farther down.
+const BEAM_DEPTH: f32 = 0.3;
+const BEAM_GROWTH: f32 = 0.3;
 #ifdef CLOUDS
 const CLOUD_STEP_M: f32 = #{CLOUD_STEP_M}.0;
 const CLOUD_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
@@ -156,7 +164,27 @@ fn step_at(ray: ptr<function, Ray>, t_m: f32, length_m: f32, share: f32, cluster
     return step;
 }
 
-// The longest step that detail, distance, the next boundary and what it would hide allow.
+#if FOG_COUNT > 0
+// The longest step in which light of the first light that fog has scattered changes little, m: it falls with the depth to that light, fastest
+// where it is strong.
+fn longest_in_beam_m(ray: ptr<function, Ray>, step: Step) -> f32 {
+    let p = vec3<f32>(step.place.p.xy, step.place.p.z + atmosphere.radius_m);
+    let mu_s = dot(normalize(p), observer.lights[0].direction);
+    // Extinction over the cosine by which the ray climbs against the light.
+    let slope_per_m = step.similar_extinction.g * abs(dot(normalize(p), (*ray).direction)) / max(mu_s, LOWEST_SUN);
+    var longest_m = NEVER_M;
+    for (var bank = 0u; bank < FOG_COUNT && mu_s > 0.0; bank++) {
+        if step.place.altitude_m < volumes[bank].top_m && step.place.altitude_m > volumes[bank].bottom_m {
+            // At that end of the step which is nearer to the light.
+            let to_light = max(similar_depths(bank, step.place).x / max(mu_s, LOWEST_SUN) - 0.5 * slope_per_m * step.length_m, 0.0);
+            longest_m = min(longest_m, (BEAM_DEPTH + BEAM_GROWTH * to_light) / max(slope_per_m, 1e-20));
+        }
+    }
+    return longest_m;
+}
+#endif
+
+// The longest step that detail, distance, the next boundary, what it would hide and how light changes in it allow.
 fn next_step(ray: ptr<function, Ray>, t_m: f32, boundary_m: f32, here: Between, growth: f32, share: f32) -> Step {
     var length_m = growth * max(here.detail_m, STEP_GROWTH * t_m);
 #ifdef CLOUDS
@@ -166,7 +194,10 @@ fn next_step(ray: ptr<function, Ray>, t_m: f32, boundary_m: f32, here: Between, 
 #endif
     length_m = min(length_m, boundary_m - t_m);
     var step = step_at(ray, t_m, length_m, share, here.cluster);
-    let longest_m = growth * STEP_DEPTH / max(greatest(step.extinction), 1e-20);
+    var longest_m = growth * STEP_DEPTH / max(greatest(step.extinction), 1e-20);
+#if FOG_COUNT > 0
+    longest_m = min(longest_m, growth * longest_in_beam_m(ray, step));
+#endif
     if longest_m < length_m {
         step = step_at(ray, t_m, longest_m, share, here.cluster);
     }

@@ -37,6 +37,16 @@ fn block_uvw(block: u32, share: vec3<f32>, part: u32, parts: u32) -> vec3<f32> {
     return (first + inset) / vec3<f32>(vec3<u32>(COLUMNS, ROWS, parts) * CELLS);
 }
 
+// Slices of fog are thin where it is dense. The first lies on its bottom and the last on its top, where light falls fastest.
+fn share_of_height(height: f32) -> f32 {
+    return (sqrt(saturate(height)) * f32(CELLS - 1u) + 0.5) / f32(CELLS);
+}
+
+fn height_of_share(share: f32) -> f32 {
+    let up = saturate((share * f32(CELLS) - 0.5) / f32(CELLS - 1u));
+    return up * up;
+}
+
 // A point in the block that holds it.
 struct Spot {
     block: u32,
@@ -47,9 +57,7 @@ fn spot_of(index: u32, place: Place) -> Spot {
     if index < FOG_COUNT {
         let level = fog_level(place.map);
         let height = (place.altitude_m - volumes[index].bottom_m) / (volumes[index].top_m - volumes[index].bottom_m);
-        // Slices are thin where fog is dense.
-        let up = sqrt(saturate(height));
-        let share = vec3<f32>(0.5 + 0.5 * place.map / fog_reach_m(level), up);
+        let share = vec3<f32>(0.5 + 0.5 * place.map / fog_reach_m(level), share_of_height(height));
         return Spot(volumes[index].first_block + level, share);
     }
     let q = turned(index, place.p - volumes[index].centre_m) / volumes[index].half_size_m;
@@ -61,7 +69,7 @@ fn place_in_block(index: u32, level: u32, share: vec3<f32>) -> Place {
     var place: Place;
     if index < FOG_COUNT {
         place.map = (2.0 * share.xy - 1.0) * fog_reach_m(level);
-        place.altitude_m = mix(volumes[index].bottom_m, volumes[index].top_m, share.z * share.z);
+        place.altitude_m = mix(volumes[index].bottom_m, volumes[index].top_m, height_of_share(share.z));
         place.p = vec3<f32>(place.map, place.altitude_m);
         return place;
     }

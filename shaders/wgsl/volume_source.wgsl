@@ -177,11 +177,17 @@ struct Arriving {
     passed: vec3<f32>,
 }
 
+// Depths straight up and down from a place in a volume: of the similar medium and, beside each, of what turns light back.
+fn similar_depths(index: u32, place: Place) -> vec4<f32> {
+    let spot = spot_of(index, place);
+    return textureSampleLevel(volume_sky_image, table_sampler, block_uvw(spot.block, spot.share, 0u, 1u), 0.0);
+}
+
 // What directional lights and the sky bring.
 fn from_lights(piece: Piece, stretch: Stretch) -> Arriving {
     let spot = spot_of(piece.index, piece.place);
     let up = normalize(vec3<f32>(piece.place.p.xy, piece.place.p.z + atmosphere.radius_m));
-    let depths = textureSampleLevel(volume_sky_image, table_sampler, block_uvw(spot.block, spot.share, 0u, 1u), 0.0);
+    let depths = similar_depths(piece.index, piece.place);
 #ifdef VOLUME_ORDERS
     let q = volumes[piece.index].similar_extinction;
     let similar = seen_similar(stretch);

@@ -47,7 +47,14 @@ fn tiny() -> Settings {
         source_orders: 3,
         sky_view_size: [8, 8],
         froxel_size: [4, 4, 4],
-        clouds: CloudSettings { sweeps: 3, ordinate_cells: 8, max_steps: 64, grid_size: 8, grid_slices: 4, ..low.clouds },
+        clouds: CloudSettings {
+            sweeps: 3,
+            ordinate_cells: 8,
+            max_steps: 64,
+            grid_size: 8,
+            grid_slices: 4,
+            ..low.clouds
+        },
         volumes: VolumeSettings { max_steps: 64, cells: 6, beam_samples: 4, ..low.volumes },
         ..low
     }

@@ -143,7 +143,7 @@ impl From<PhaseLobe> for Lobe {
 
 impl From<Lobe> for PhaseLobe {
     fn from(Lobe { scale_per_sr, quadratic, gap, slope, exponent }: Lobe) -> Self {
-        Self { scale_per_sr, quadratic, exponent, ..Self::ABSENT }.from_forward(gap, slope)
+        Self { scale_per_sr, quadratic, exponent, ..Self::ABSENT }.with_base_about_forward(gap, slope)
     }
 }
 

@@ -62,7 +62,7 @@ impl PhaseLobe {
     }
 
     /// From gap and slope about ν = 1.
-    pub fn from_forward(self, gap: f64, slope: f64) -> Self {
+    pub fn with_base_about_forward(self, gap: f64, slope: f64) -> Self {
         match slope < 0.0 {
             true => Self { gap: gap + 2.0 * slope, slope: -slope, peak_nu: -1.0, ..self },
             false => Self { gap, slope, peak_nu: 1.0, ..self },

@@ -11,10 +11,12 @@
 //! Of the light at a point a table keeps what matter there scatters of it into each direction.
 
 mod layer;
+mod matrix;
 
 use std::f64::consts::PI;
 
-use layer::{Doubled, Layer, Matrix, Source, Streams, Vector, associated};
+use layer::{Doubled, Layer, Source, Streams, associated};
+use matrix::{Matrix, Vector};
 
 /// Directions in each hemisphere.
 pub const STREAMS: usize = 8;
@@ -134,7 +136,8 @@ impl Slabs {
         let modes = if light == SlabLight::Sky { &self.modes[..1] } else { &self.modes };
         for (mode, layers) in modes.iter().enumerate() {
             let sources = layers.sources(light);
-            let grounds: Vec<_> = (0..DEPTHS).map(|node| self.on_ground(layers, mode, node, &sources[node], light)).collect();
+            let grounds: Vec<_> =
+                (0..DEPTHS).map(|node| self.on_ground(layers, mode, node, &sources[node], light)).collect();
             let cosines: Vec<f64> = (0..azimuths).map(|node| (mode as f64 * node_azimuth_rad(node)).cos()).collect();
             for (index, field) in table.iter_mut().enumerate() {
                 let (above, below) = (index / DEPTHS, index % DEPTHS);
@@ -153,7 +156,14 @@ impl Slabs {
     }
 
     /// Reflection of a layer that lies on the ground, and what it sends up of a beam whose flux is 1 at its top.
-    fn on_ground(&self, layers: &Layers, mode: usize, node: usize, source: &Source, light: SlabLight) -> (Matrix, Vector) {
+    fn on_ground(
+        &self,
+        layers: &Layers,
+        mode: usize,
+        node: usize,
+        source: &Source,
+        light: SlabLight,
+    ) -> (Matrix, Vector) {
         let (streams, layer, albedo) = (&layers.streams, layers.layers[node].whole(), self.matter.ground_albedo);
         if mode > 0 {
             return (layer.reflected, source.up);

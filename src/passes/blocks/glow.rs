@@ -64,7 +64,8 @@ impl Densities {
             let q: [f64; 3] = std::array::from_fn(|axis| share[axis] * half_size_m[axis]);
             let p = [q[0] * cos + q[1] * sin, q[1] * cos - q[0] * sin, q[2]];
             let p: [f64; 3] = std::array::from_fn(|axis| p[axis] + f64::from(parameters.centre_m[axis]));
-            let is_inside = matches!(volume.form, VolumeForm::Box { .. }) || share.iter().map(|s| s * s).sum::<f64>() <= 1.0;
+            let is_inside =
+                matches!(volume.form, VolumeForm::Box { .. }) || share.iter().map(|s| s * s).sum::<f64>() <= 1.0;
             if is_inside { field.density(p, [0.0; 2], 0.0) } else { 0.0 }
         };
         Self { half_size_m, cells: (0..CELLS.pow(3)).map(density).collect() }
@@ -89,7 +90,8 @@ impl Densities {
     fn escaping(&self, absorption_per_m: Bands) -> Bands {
         let (mut left, mut sent) = ([0.0; BAND_COUNT], 0.0);
         for index in 0..self.cells.len() {
-            let is_place = [index, index / CELLS, index / CELLS.pow(2)].iter().all(|i| i % CELLS % STRIDE == STRIDE / 2);
+            let is_place =
+                [index, index / CELLS, index / CELLS.pow(2)].iter().all(|i| i % CELLS % STRIDE == STRIDE / 2);
             if !is_place || self.cells[index] <= 0.0 {
                 continue;
             }
@@ -110,7 +112,8 @@ impl Densities {
         let per_m: [f64; 3] = std::array::from_fn(|axis| direction[axis] / self.half_size_m[axis]);
         let out_m = (0..3).map(|axis| (per_m[axis].signum() - from[axis]) / per_m[axis]).fold(f64::INFINITY, f64::min);
         let along = |step: usize| (step as f64 + 0.5) / STEPS as f64 * out_m;
-        let densities = (0..STEPS).map(|step| self.at(std::array::from_fn(|axis| from[axis] + per_m[axis] * along(step))));
+        let densities =
+            (0..STEPS).map(|step| self.at(std::array::from_fn(|axis| from[axis] + per_m[axis] * along(step))));
         densities.sum::<f64>() * out_m / STEPS as f64
     }
 }
@@ -134,7 +137,9 @@ mod tests {
     use std::path::Path;
 
     fn glowing(text: &str) -> Volume {
-        let text = format!("preset = \"earth\"\nsun = {{ elevation_deg = 40, azimuth_deg = 0 }}\ncamera = {{ altitude_m = 2, elevation_deg = 0, azimuth_deg = 0 }}\n[[volumes]]\nname = \"gas\"\ncentre_m = [0, 60, 14]\nemission_per_m = 0.01\n{text}");
+        let text = format!(
+            "preset = \"earth\"\nsun = {{ elevation_deg = 40, azimuth_deg = 0 }}\ncamera = {{ altitude_m = 2, elevation_deg = 0, azimuth_deg = 0 }}\n[[volumes]]\nname = \"gas\"\ncentre_m = [0, 60, 14]\nemission_per_m = 0.01\n{text}"
+        );
         let scene = Scene::parse(&text, Path::new("glow.toml")).unwrap();
         scene.volumes[0].clone()
     }
@@ -148,7 +153,9 @@ mod tests {
     #[test]
     fn a_ball_sends_out_what_escapes_from_it() {
         for absorption_per_m in [0.001, 0.05, 0.2, 0.6] {
-            let ball = glowing(&format!("shape = \"ellipsoid\"\nsize_m = [16, 16, 16]\nabsorption_per_m = {absorption_per_m}"));
+            let ball = glowing(&format!(
+                "shape = \"ellipsoid\"\nsize_m = [16, 16, 16]\nabsorption_per_m = {absorption_per_m}"
+            ));
             let exact = 0.01 * 4.0 / 3.0 * PI * 512.0 * escape_from_ball(8.0 * absorption_per_m);
             let found = Glow::of(&ball).unwrap().intensity[1];
             assert!((found / exact - 1.0).abs() < 0.06, "{absorption_per_m} /m: {found} for {exact}");
