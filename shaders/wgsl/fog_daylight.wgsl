@@ -11,7 +11,7 @@
 #import welkin::slab_field::{beam_table, sky_table, slab_above, slab_on_ground, slab_spot, AZIMUTHS, LOWEST_SUN}
 #import welkin::tables::table_sampler
 #import welkin::volume_field::{volumes, Place, FOG_COUNT}
-#import welkin::volume_grid::{block_uvw, FOG_LEVELS}
+#import welkin::volume_grid::{block_uvw, spot_of, FOG_LEVELS}
 #import welkin::volume_source::{similar_depths, volume_sky_image}
 
 // Share of the light on a horizontal plane, of which shares of the beam and of the sky reach the top of the fog.
@@ -19,7 +19,7 @@ fn fog_share(place: Place, above: vec2<f32>) -> f32 {
     if FOG_COUNT == 0u || place.altitude_m >= volumes[0].top_m {
         return 1.0;
     }
-    let depths = similar_depths(0u, place);
+    let depths = similar_depths(spot_of(0u, place));
     let mu = observer.lights[0].direction.z;
     let beam = above.x * max(mu, 0.0) * light_in_air(0u, place.altitude_m, mu);
     let sky = above.y * PI * surroundings(place.altitude_m, mu, observer.lights[0].irradiance).above;

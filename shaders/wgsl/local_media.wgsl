@@ -28,6 +28,7 @@
 #if FOG_COUNT > 0
 #import welkin::observer::observer
 #import welkin::slab_field::LOWEST_SUN
+#import welkin::volume_grid::spot_of
 #import welkin::volume_source::similar_depths
 #endif
 #if LOCAL_LIGHT_COUNT > 0
@@ -176,7 +177,7 @@ fn longest_in_beam_m(ray: ptr<function, Ray>, step: Step) -> f32 {
     for (var bank = 0u; bank < FOG_COUNT && mu_s > 0.0; bank++) {
         if step.place.altitude_m < volumes[bank].top_m && step.place.altitude_m > volumes[bank].bottom_m {
             // At that end of the step which is nearer to the light.
-            let to_light = max(similar_depths(bank, step.place).x / max(mu_s, LOWEST_SUN) - 0.5 * slope_per_m * step.length_m, 0.0);
+            let to_light = max(similar_depths(spot_of(bank, step.place)).x / max(mu_s, LOWEST_SUN) - 0.5 * slope_per_m * step.length_m, 0.0);
             longest_m = min(longest_m, (BEAM_DEPTH + BEAM_GROWTH * to_light) / max(slope_per_m, 1e-20));
         }
     }

@@ -31,7 +31,7 @@
 #import welkin::slab_field::{beam_table, scattered_of_beam, scattered_of_sky, sky_table, slab_spot, slab_way, LOWEST_SUN}
 #import welkin::tables::table_sampler
 #import welkin::volume_field::{volumes, Place, FOG_COUNT}
-#import welkin::volume_grid::{block_uvw, spot_of}
+#import welkin::volume_grid::{block_uvw, spot_of, Spot}
 
 const VOLUME_LOBES: u32 = 2u;
 const FOUR_PI: f32 = 12.5663706;
@@ -160,7 +160,8 @@ fn diffuse_source(piece: Piece, light: u32, standing: Standing, arriving: vec3<f
         let beam_flux = max(standing.mu_s, 0.0) * exp(-beam.a) * arriving;
         let scattered = beam_flux * scattered_of_beam(beam_table(piece.index, light), spot, way)
             + PI * around.above * scattered_of_sky(sky_table(piece.index), spot, way);
-        return volume.similarity * max(scattered, vec3<f32>(0.0));
+        // A few moments may ring below nothing. What is no number stays none.
+        return volume.similarity * select(scattered, vec3<f32>(0.0), scattered < vec3<f32>(0.0));
     }
     let mean_depth = dot(beam.rgb, vec3<f32>(1.0 / 3.0));
     let left = exp(-beam.a) / (1.0 + 0.75 * volume.backward * mean_depth);
@@ -177,9 +178,8 @@ struct Arriving {
     passed: vec3<f32>,
 }
 
-// Depths straight up and down from a place in a volume: of the similar medium and, beside each, of what turns light back.
-fn similar_depths(index: u32, place: Place) -> vec4<f32> {
-    let spot = spot_of(index, place);
+// Depths straight up and down from a spot in a volume: of the similar medium and, beside each, of what turns light back.
+fn similar_depths(spot: Spot) -> vec4<f32> {
     return textureSampleLevel(volume_sky_image, table_sampler, block_uvw(spot.block, spot.share, 0u, 1u), 0.0);
 }
 
@@ -187,7 +187,7 @@ fn similar_depths(index: u32, place: Place) -> vec4<f32> {
 fn from_lights(piece: Piece, stretch: Stretch) -> Arriving {
     let spot = spot_of(piece.index, piece.place);
     let up = normalize(vec3<f32>(piece.place.p.xy, piece.place.p.z + atmosphere.radius_m));
-    let depths = similar_depths(piece.index, piece.place);
+    let depths = similar_depths(spot);
 #ifdef VOLUME_ORDERS
     let q = volumes[piece.index].similar_extinction;
     let similar = seen_similar(stretch);
