@@ -184,8 +184,11 @@ impl SlabField {
     /// Adds radiances of a mode, of whose azimuths these are the cosines.
     fn add(&mut self, layers: &Layers, mode: usize, down: &Vector, up: &Vector, cosines: &[f64]) {
         if mode == 0 {
-            (self.downward, self.upward) = (layers.streams.flux(down), layers.streams.flux(up));
-            self.mean_upward = layers.streams.mean(up);
+            // Where hardly any light arrives roundings are below nothing.
+            let above_nothing = |value: f64| value.clamp(0.0, f64::INFINITY);
+            self.downward = above_nothing(layers.streams.flux(down));
+            self.upward = above_nothing(layers.streams.flux(up));
+            self.mean_upward = above_nothing(layers.streams.mean(up));
         }
         let moments = layers.streams.moments(down, up);
         let rows = self.scattered_per_sr.chunks_exact_mut(cosines.len()).zip(&layers.at_elevations);
