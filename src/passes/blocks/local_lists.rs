@@ -68,3 +68,26 @@ impl LocalLists {
         if self.indices.is_empty() { vec![0] } else { self.indices.clone() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::super::local_lights::lamps;
+    use super::*;
+    use crate::plan::{Outputs, Quality, Settings};
+    use crate::probe::Orders;
+    use crate::scene::Scene;
+
+    #[test]
+    fn a_glowing_volume_does_not_stand_before_its_own_light() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/fog/glowing-gas.toml");
+        let scene = Scene::read(&path).unwrap();
+        let facts = Facts::new(&scene, Settings::of(Quality::Low), Orders::All, Outputs::default()).unwrap();
+        let lamps = lamps(&facts);
+        let lists = LocalLists::new(&facts, &lamps);
+        assert_eq!((lamps.len(), lists.of_light(0).len()), (1, 0));
+        // Negative control: of the sun's light it does.
+        assert_eq!(lists.of_volume(0).len(), 1);
+    }
+}
