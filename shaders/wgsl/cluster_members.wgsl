@@ -1,7 +1,7 @@
 #define_import_path welkin::cluster_members
 // What a cluster holds, one after the other:
 //
-//   var found = media_of(cluster);
+//   var found = volumes_of(cluster);
 //   for (var index = next_member(&found); index != NONE; index = next_member(&found)) { ... }
 //
 // Definitions: as welkin::cluster; LAMP_FROXELS (light of what is far from a place comes from froxels).
@@ -14,9 +14,6 @@
 const NONE: u32 = 0xffffffffu;
 
 struct Members {
-    // Those that stand before the bits, and how many of them are done.
-    before: u32,
-    done: u32,
     // Bits left of the word that is looked at, and the number of its first.
     bits: u32,
     base: u32,
@@ -26,10 +23,6 @@ struct Members {
 }
 
 fn next_member(members: ptr<function, Members>) -> u32 {
-    if (*members).done < (*members).before {
-        (*members).done += 1u;
-        return (*members).done - 1u;
-    }
     while (*members).bits == 0u {
         if (*members).word >= (*members).end {
             return NONE;
@@ -44,29 +37,24 @@ fn next_member(members: ptr<function, Members>) -> u32 {
 }
 
 // Numbers count from `first`, whose word is the cluster's first one but for `words`.
-fn members(before: u32, first: u32, word: u32, words: u32) -> Members {
-    return Members(before, 0u, 0u, first - 32u, word, word + words);
+fn members(first: u32, word: u32, words: u32) -> Members {
+    return Members(0u, first - 32u, word, word + words);
 }
 
 // Local volumes.
 fn volumes_of(cluster: u32) -> Members {
-    return members(0u, FOG_COUNT, cluster, VOLUME_WORDS);
-}
-
-// All fog, then local volumes.
-fn media_of(cluster: u32) -> Members {
-    return members(FOG_COUNT, FOG_COUNT, cluster, VOLUME_WORDS);
+    return members(FOG_COUNT, cluster, VOLUME_WORDS);
 }
 
 // Local lights that reach the cluster.
 fn lamps_of(cluster: u32) -> Members {
-    return members(0u, 0u, cluster + VOLUME_WORDS, LIGHT_WORDS);
+    return members(0u, cluster + VOLUME_WORDS, LIGHT_WORDS);
 }
 
 // Those of them whose light no froxel holds.
 fn near_lamps_of(cluster: u32) -> Members {
 #ifdef LAMP_FROXELS
-    return members(0u, 0u, cluster + VOLUME_WORDS + LIGHT_WORDS, LIGHT_WORDS);
+    return members(0u, cluster + VOLUME_WORDS + LIGHT_WORDS, LIGHT_WORDS);
 #else
     return lamps_of(cluster);
 #endif

@@ -8,14 +8,14 @@
 // Fog and volumes take from the air's light and shade the ground; that they shade thin air is left out.
 //
 // Definitions: CLOUDS; VOLUME_GROWTH_PERMILLE, a step's share of the distance; VOLUME_MAX_STEPS; LOCAL_LIGHT_COUNT;
-// LAMP_FROXELS.
+// LAMP_FROXELS; LOCAL_VOLUMES (some volume is no fog).
 
 #import welkin::atmosphere::{atmosphere, PI}
 #ifdef CLOUDS
 #import welkin::attenuation::mean_transmittance
 #endif
 #import welkin::cluster::{cluster_of, slice_of}
-#import welkin::cluster_members::{media_of, next_member, NONE}
+#import welkin::cluster_members::{next_member, volumes_of, NONE}
 #import welkin::media_between::{between, next_boundary_m, Between}
 #import welkin::fog_daylight::fog_share
 #import welkin::media_ground::{ground_lit_by_lamps, volume_share}
@@ -23,7 +23,7 @@
     altitude_m, clear_air, follow_air, growth_behind, leave_air, left_on_surface, observer_position, pass_air, place_in_step,
     position_m, ray_of, rise_at, through_air, Air, Ray, NEVER_M, OPAQUE,
 }
-#import welkin::volume_field::{fog_density, place_of, volumes, Place, FOG_COUNT, VOLUME_COUNT}
+#import welkin::volume_field::{fog_density, place_of, volume_density, volumes, Place, FOG_COUNT, VOLUME_COUNT}
 #import welkin::volume_source::{from_lights, seen_whole, Arriving, Piece, Stretch}
 #if FOG_COUNT > 0
 #import welkin::observer::observer
@@ -54,6 +54,7 @@
 @group(1) @binding(53) var media_diffuse_image: texture_storage_2d<rgba32float, write>;
 
 const MAX_STEPS: u32 = #{VOLUME_MAX_STEPS}u;
+const FOG_SLOTS: u32 = max(FOG_COUNT, 1u);
 const STEP_GROWTH: f32 = #{VOLUME_GROWTH_PERMILLE}.0 * 0.001;
 // Longest step in optical depths, while little is hidden.
 const STEP_DEPTH: f32 = 0.7;
@@ -74,6 +75,11 @@ struct Sum {
     local: vec3<f32>,
     // That of the medium similar to all of them: welkin::volume_source.
     similar: vec3<f32>,
+}
+
+fn add_light(sum: ptr<function, Sum>, air_leaves: vec3<f32>, sent: Arriving) {
+    (*sum).radiance += air_leaves * sent.scattered;
+    (*sum).passed += air_leaves * sent.passed;
 }
 
 fn greatest(v: vec3<f32>) -> f32 {
@@ -151,17 +157,32 @@ struct Step {
     extinction: vec3<f32>,
     // Of the similar medium.
     similar_extinction: vec3<f32>,
+    // Densities of the banks of fog.
+    fog: array<f32, FOG_SLOTS>,
+}
+
+fn add_matter(step: ptr<function, Step>, index: u32, density: f32) {
+    let own = volumes[index].extinction_per_m * density;
+    (*step).extinction += own;
+    (*step).similar_extinction += volumes[index].similar_extinction * own;
 }
 
 fn step_at(ray: ptr<function, Ray>, t_m: f32, length_m: f32, share: f32, cluster: u32) -> Step {
-    var step = Step(length_m, place_of(position_m(ray, t_m + share * length_m)), 0.0, vec3<f32>(0.0), vec3<f32>(0.0));
+    var step: Step;
+    step.length_m = length_m;
+    step.place = place_of(position_m(ray, t_m + share * length_m));
     step.half_rise_m = 0.5 * (altitude_m(ray, t_m + length_m) - altitude_m(ray, t_m));
-    var media = media_of(cluster);
-    for (var index = next_member(&media); index != NONE; index = next_member(&media)) {
-        let own = volumes[index].extinction_per_m * fog_density(index, step.place, step.half_rise_m);
-        step.extinction += own;
-        step.similar_extinction += volumes[index].similar_extinction * own;
+    // Fog is everywhere in a known number of banks: with an index that compilers foresee, a bank's numbers are read once for all pixels.
+    for (var bank = 0u; bank < FOG_COUNT; bank++) {
+        step.fog[bank] = fog_density(bank, step.place, step.half_rise_m);
+        add_matter(&step, bank, step.fog[bank]);
     }
+#ifdef LOCAL_VOLUMES
+    var locals = volumes_of(cluster);
+    for (var index = next_member(&locals); index != NONE; index = next_member(&locals)) {
+        add_matter(&step, index, volume_density(index, step.place));
+    }
+#endif
     return step;
 }
 
@@ -290,15 +311,22 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             sum.clouds += cloudy * step.length_m;
         }
 #endif
-        var media = media_of(here.cluster);
-        for (var index = next_member(&media); index != NONE; index = next_member(&media)) {
-            let density = fog_density(index, step.place, step.half_rise_m);
-            if density > 0.0 {
-                let sent = from_volume(Piece(index, density, step.place), stretch, ray.pixel, here.cluster);
-                sum.radiance += air_leaves * sent.scattered;
-                sum.passed += air_leaves * sent.passed;
+        for (var bank = 0u; bank < FOG_COUNT; bank++) {
+            if step.fog[bank] > 0.0 {
+                let piece = Piece(bank, step.fog[bank], step.place);
+                add_light(&sum, air_leaves, from_volume(piece, stretch, ray.pixel, here.cluster));
             }
         }
+#ifdef LOCAL_VOLUMES
+        var locals = volumes_of(here.cluster);
+        for (var index = next_member(&locals); index != NONE; index = next_member(&locals)) {
+            let density = volume_density(index, step.place);
+            if density > 0.0 {
+                let piece = Piece(index, density, step.place);
+                add_light(&sum, air_leaves, from_volume(piece, stretch, ray.pixel, here.cluster));
+            }
+        }
+#endif
         sum.local += own;
         sum.similar += similar_within;
         t_m += step.length_m;

@@ -1,10 +1,12 @@
 #define_import_path welkin::media_between
 // Boundaries of media along a ray, and what lies between two of them.
 //
-// Definitions: CLOUDS; FOG_COUNT.
+// Definitions: CLOUDS; FOG_COUNT; LOCAL_VOLUMES.
 
 #import welkin::cluster::{cluster_of, slice_beyond, slice_end_m, slice_of}
+#ifdef LOCAL_VOLUMES
 #import welkin::cluster_members::{next_member, volumes_of, NONE}
+#endif
 #import welkin::media_march::{altitude_m, next_crossing_m, observer_position, Ray, NEVER_M}
 #import welkin::volume_field::{local_span_m, volumes, FOG_COUNT}
 #ifdef CLOUDS
@@ -18,12 +20,14 @@ fn next_boundary_m(ray: ptr<function, Ray>, t_m: f32) -> f32 {
     let after_m = t_m * 1.000001 + 1e-4;
     let slice = slice_beyond(after_m);
     var next = min(next_crossing_m(ray, t_m), slice_end_m(slice));
+#ifdef LOCAL_VOLUMES
     var locals = volumes_of(cluster_of((*ray).pixel, slice));
     for (var index = next_member(&locals); index != NONE; index = next_member(&locals)) {
         let span_m = local_span_m(index, observer_position(), (*ray).direction);
         next = select(next, min(next, span_m.x), span_m.x > after_m && span_m.y > span_m.x);
         next = select(next, min(next, span_m.y), span_m.y > after_m && span_m.y > span_m.x);
     }
+#endif
     return min(next, (*ray).end_m);
 }
 
@@ -54,6 +58,7 @@ fn between(ray: ptr<function, Ray>, from_m: f32, to_m: f32) -> Between {
             found.detail_m = min(found.detail_m, volumes[i].detail_m / along);
         }
     }
+#ifdef LOCAL_VOLUMES
     var locals = volumes_of(found.cluster);
     for (var index = next_member(&locals); index != NONE; index = next_member(&locals)) {
         let span_m = local_span_m(index, observer_position(), (*ray).direction);
@@ -62,6 +67,7 @@ fn between(ray: ptr<function, Ray>, from_m: f32, to_m: f32) -> Between {
             found.detail_m = min(found.detail_m, min(volumes[index].detail_m, 0.125 * (span_m.y - span_m.x)));
         }
     }
+#endif
 #ifdef CLOUDS
     found.clouds = is_in_clouds(altitude);
     found.clouds_alone = found.clouds && found.detail_m >= NEVER_M;

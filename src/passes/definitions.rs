@@ -102,6 +102,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("CLOUD_ORDINATES", facts.ordinate_groups() > 0),
         ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),
         ("LOCAL_MEDIA", facts.has_local_media()),
+        ("LOCAL_VOLUMES", facts.volumes.len() as u32 > facts.fog_count()),
         ("LAMP_FROXELS", lamp_froxels::are_there(facts)),
         ("VOLUME_NOISE", facts.has_volume_noise()),
         ("VOLUME_GRIDS", facts.volumes.iter().any(|volume| volume.grid.is_some())),
