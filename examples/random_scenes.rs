@@ -48,6 +48,10 @@ fn main() -> ExitCode {
     if sweep.failures == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
+fn new_renderer() -> Renderer {
+    Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
 struct Sweep {
     renderer: Renderer,
     runner: TestRunner,
@@ -62,12 +66,11 @@ struct Sweep {
 
 impl Sweep {
     fn new(seed: usize) -> Self {
-        let renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
         let random = TestRng::from_seed(RngAlgorithm::ChaCha, &seed.to_le_bytes().repeat(4));
         let mut known = Vec::new();
         collect(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes"), &mut known).expect("the example scenes");
         Self {
-            renderer,
+            renderer: new_renderer(),
             runner: TestRunner::new_with_rng(Config::default(), random),
             schema: welkin::scene::schema(),
             known,
@@ -111,6 +114,7 @@ impl Sweep {
         }
         let before = self.rendered();
         let mut table = whole.clone();
+        let mut earlier = None;
         for _ in 0..values {
             let pipelines = self.renderer.compiled_pipelines() - compiled;
             if self.rendered() == count || pipelines > MOST_PIPELINES || began.elapsed() > LONGEST {
@@ -119,11 +123,12 @@ impl Sweep {
             match fate(&mut self.renderer, &table.to_string(), true) {
                 Ok(fate) => *self.fates.entry(fate).or_default() += 1,
                 Err(words) => {
-                    self.fail(table, &words);
+                    self.fail(table, earlier, &words);
                     break;
                 }
             }
-            table = with_other_numbers(&self.schema, &whole, &mut self.runner);
+            let next = with_other_numbers(&self.schema, &whole, &mut self.runner);
+            earlier = Some(std::mem::replace(&mut table, next));
         }
         eprintln!(
             "{} of {count} in {:.0} s: {} with {} pipelines in {:.1} s; {:?}",
@@ -136,10 +141,19 @@ impl Sweep {
         );
     }
 
-    fn fail(&mut self, table: toml::Table, words: &str) {
+    /// Keeps what breaks a law by itself, made small. Where only what was drawn before can have made it break one, both are printed whole:
+    /// trials of making it small would change that.
+    fn fail(&mut self, table: toml::Table, earlier: Option<toml::Table>, words: &str) {
         self.failures += 1;
         eprintln!("{words}");
-        let renderer = &mut self.renderer;
+        let renderer = &mut new_renderer();
+        if fate(renderer, &table.to_string(), true).is_ok() {
+            let earlier = earlier.unwrap_or_default();
+            eprintln!(
+                "A renderer that has drawn nothing before keeps the law. It was broken by\n{table}\ndrawn after\n{earlier}"
+            );
+            return;
+        }
         let small = shrunk(table, TRIALS, |table| fate(renderer, &table.to_string(), true).is_err());
         let why = fate(renderer, &small.to_string(), true).err().unwrap_or_else(|| words.to_owned());
         eprintln!("{}", keep(&small, &why));
