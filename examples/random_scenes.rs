@@ -54,6 +54,8 @@ fn new_renderer() -> Renderer {
 
 struct Sweep {
     renderer: Renderer,
+    /// What it has drawn before.
+    earlier: toml::Table,
     runner: TestRunner,
     schema: serde_json::Value,
     /// The example scenes.
@@ -71,6 +73,7 @@ impl Sweep {
         collect(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes"), &mut known).expect("the example scenes");
         Self {
             renderer: new_renderer(),
+            earlier: toml::Table::new(),
             runner: TestRunner::new_with_rng(Config::default(), random),
             schema: welkin::scene::schema(),
             known,
@@ -114,7 +117,6 @@ impl Sweep {
         }
         let before = self.rendered();
         let mut table = whole.clone();
-        let mut earlier = None;
         for _ in 0..values {
             let pipelines = self.renderer.compiled_pipelines() - compiled;
             if self.rendered() == count || pipelines > MOST_PIPELINES || began.elapsed() > LONGEST {
@@ -123,12 +125,12 @@ impl Sweep {
             match fate(&mut self.renderer, &table.to_string(), true) {
                 Ok(fate) => *self.fates.entry(fate).or_default() += 1,
                 Err(words) => {
-                    self.fail(table, earlier, &words);
+                    self.fail(table, &words);
                     break;
                 }
             }
             let next = with_other_numbers(&self.schema, &whole, &mut self.runner);
-            earlier = Some(std::mem::replace(&mut table, next));
+            self.earlier = std::mem::replace(&mut table, next);
         }
         eprintln!(
             "{} of {count} in {:.0} s: {} with {} pipelines in {:.1} s; {:?}",
@@ -143,12 +145,12 @@ impl Sweep {
 
     /// Keeps what breaks a law by itself, made small. Where only what was drawn before can have made it break one, both are printed whole:
     /// trials of making it small would change that.
-    fn fail(&mut self, table: toml::Table, earlier: Option<toml::Table>, words: &str) {
+    fn fail(&mut self, table: toml::Table, words: &str) {
         self.failures += 1;
         eprintln!("{words}");
         let renderer = &mut new_renderer();
         if fate(renderer, &table.to_string(), true).is_ok() {
-            let earlier = earlier.unwrap_or_default();
+            let earlier = &self.earlier;
             eprintln!(
                 "A renderer that has drawn nothing before keeps the law. It was broken by\n{table}\ndrawn after\n{earlier}"
             );
