@@ -49,7 +49,8 @@ fn main() -> ExitCode {
 }
 
 fn new_renderer() -> Renderer {
-    Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"))
+    let request = DeviceRequest { poisons_memory: true, ..DeviceRequest::default() };
+    Renderer::new(&request).unwrap_or_else(|error| panic!("{error}"))
 }
 
 struct Sweep {

@@ -5,7 +5,7 @@
 #![cfg(unix)]
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
@@ -52,6 +52,76 @@ fn refused(limits: &str, arguments: &str, words: &[&str]) {
     assert!(words.iter().all(|word| said.contains(word)), "{arguments}: {said}");
     assert!(!said.contains("panicked"), "{said}");
     assert!(left(desk.path()).is_empty(), "{arguments} left {:?}", left(desk.path()));
+}
+
+/// The driver of `failing_driver/`, compiled: the file that has the loader take it.
+fn failing_driver(folder: &Path) -> PathBuf {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/failing_driver/driver.c");
+    let library = folder.join("driver.so");
+    let mut cc = Command::new("cc");
+    cc.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-o"])
+        .arg(&library)
+        .arg(source)
+        .arg("-ldl");
+    assert!(cc.status().expect("cc, which scripts/setup.sh installs").success());
+    let manifest = folder.join("driver.json");
+    let driver = serde_json::json!({ "library_path": library, "api_version": "1.3.0" });
+    fs::write(&manifest, serde_json::json!({ "file_format_version": "1.0.0", "ICD": driver }).to_string()).unwrap();
+    manifest
+}
+
+/// The driver behind it: a file that the loader would take of itself.
+fn real_driver() -> String {
+    let named = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].into_iter().find_map(|name| std::env::var(name).ok());
+    let installed = || {
+        let files = fs::read_dir("/usr/share/vulkan/icd.d").expect("drivers, which scripts/setup.sh installs");
+        let mut names = files.map(|file| file.unwrap().path().display().to_string());
+        names.find(|name| name.contains("lvp")).expect("lavapipe")
+    };
+    let manifest = named.unwrap_or_else(installed);
+    let text = fs::read_to_string(manifest.split(':').next().unwrap_or_default()).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
+    manifest["ICD"]["library_path"].as_str().unwrap().to_owned()
+}
+
+/// Renders on a driver whose `call` returns a number in place of a result, after so many that it has answered.
+fn rendered_on(driver: &Path, folder: &Path, call: &str, result: i32, after: u32) -> Output {
+    let mut command = shell(folder, "", RENDER);
+    command.env("VK_DRIVER_FILES", driver).env("VK_ICD_FILENAMES", driver).env("WELKIN_TEST_DRIVER", real_driver());
+    command.env("WELKIN_TEST_CALL", call).env("WELKIN_TEST_RESULT", result.to_string());
+    command.env("WELKIN_TEST_AFTER", after.to_string()).output().unwrap()
+}
+
+#[test]
+fn a_lost_device_and_a_driver_without_memory_are_named_with_what_to_do() {
+    const OUT_OF_HOST_MEMORY: i32 = -1;
+    const OUT_OF_DEVICE_MEMORY: i32 = -2;
+    const DEVICE_LOST: i32 = -4;
+    let built = tempfile::tempdir().unwrap();
+    let driver = failing_driver(built.path());
+    let lost = &["the device was lost", "run it again"][..];
+    let host = &["memory of the host", "smaller picture"][..];
+    let faults = [
+        ("vkQueueSubmit2", DEVICE_LOST, 0, lost),
+        ("vkWaitForFences", DEVICE_LOST, 1, lost),
+        ("vkCreateComputePipelines", OUT_OF_HOST_MEMORY, 2, host),
+        ("vkCreateImage", OUT_OF_HOST_MEMORY, 3, host),
+        ("vkCreateBuffer", OUT_OF_DEVICE_MEMORY, 1, &["the device has no memory left", "lower quality"]),
+        ("vkAllocateMemory", OUT_OF_DEVICE_MEMORY, 0, &["no memory for `"]),
+    ];
+    for (call, result, after, words) in faults {
+        let desk = desk();
+        let output = rendered_on(&driver, desk.path(), call, result, after);
+        let said = message(&output);
+        assert_eq!(output.status.code(), Some(2), "{call}: {said}");
+        assert!(words.iter().all(|word| said.contains(word)), "{call}: {said}");
+        assert!(said.contains(call) || call == "vkAllocateMemory", "{call}: {said}");
+        assert!(left(desk.path()).is_empty(), "{call} left {:?}", left(desk.path()));
+    }
+    // Control: the same driver without a fault.
+    let desk = desk();
+    assert!(rendered_on(&driver, desk.path(), "none", 0, 0).status.success());
+    assert_eq!(left(desk.path()), ["out.exr"]);
 }
 
 /// No file longer than a few KiB, as if the disk were full; the signal that comes with it is ignored.

@@ -23,7 +23,7 @@ const ONE_IN: usize = 20;
 #[test]
 fn every_random_scene_file_is_refused_with_a_reason_or_rendered_with_sound_numbers() {
     let _alone = common::alone();
-    let renderer = Renderer::new(&DeviceRequest::default()).unwrap();
+    let renderer = Renderer::new(&DeviceRequest { poisons_memory: true, ..DeviceRequest::default() }).unwrap();
     let random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
     let fates = try_scenes(renderer, SCENES, ONE_IN, random).unwrap_or_else(|words| panic!("{words}"));
     println!("{fates:?}");
@@ -36,7 +36,7 @@ fn every_random_scene_file_is_refused_with_a_reason_or_rendered_with_sound_numbe
 #[test]
 fn what_once_failed_does_not_fail_again() {
     let _alone = common::alone();
-    let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap();
+    let mut renderer = Renderer::new(&DeviceRequest { poisons_memory: true, ..DeviceRequest::default() }).unwrap();
     let files = fs::read_dir(regressions()).unwrap().map(|entry| entry.unwrap().path());
     for file in files.filter(|file| file.extension().is_some_and(|ending| ending == "toml")) {
         let text = fs::read_to_string(&file).unwrap();

@@ -68,13 +68,11 @@ fn through() -> (DVec3, DVec3) {
 
 fn trace(world: &World, by: FirstOrderBy, walks: u64) -> Estimate {
     let (p, d) = through();
-    View::new(world, p, d, by).estimate(&Budget {
-        batches: 64,
-        walks_per_batch: walks.div_ceil(64),
-        seed: 3,
-        stream: 0,
-        first_batch: 0,
-    })
+    View::new(world, p, d, by).estimate(&budget(walks))
+}
+
+fn budget(walks: u64) -> Budget {
+    Budget { batches: 64, walks_per_batch: walks.div_ceil(64), seed: 3, stream: 0, first_batch: 0 }
 }
 
 fn assert_equal(a: f64, b: f64, standard_error: f64, label: &str) {
@@ -270,6 +268,37 @@ fn ray_marching_tends_to_the_path_tracers_orders() {
     let spread = second.standard_error[0].hypot(orders.total_error[0]) + 1e-3 * expected;
     assert_equal(second.radiance[0], expected, spread, "orders 1 and 2");
     assert!(second.radiance[0] - first > 4.0 * spread, "the second order is seen");
+}
+
+#[test]
+fn what_glows_and_weakens_nothing_is_found_by_walks() {
+    // A cube that glows, seen through its middle: emission times length.
+    let emission = 0.3;
+    let mut world = grid_cube(0.0, 0.0, PhaseFunction::Isotropic, |_| 1.0);
+    let matter = world.bodies[0].matter[0].clone();
+    let field = world.bodies[0].field.clone();
+    world.bodies = Arc::new([Body { matter: [Matter { emission_per_m: [emission; 3], ..matter }], field }]);
+    let (position, direction) = (DVec3::new(0.5, 0.5, -1.0), DVec3::Z);
+    let seen = View::new(&world, position, direction, FirstOrderBy::Walks).estimate(&budget(20_000));
+    assert_equal(seen.mean.total()[1], emission, seen.total_error[1], "through a cube");
+    // A shell over ground of albedo A: along each direction the ground sees emission times the length between two spheres.
+    let (radius_m, albedo, shell_m) = (6.36e6, 0.4, [5e4, 5.1e4]);
+    let layer = Constituent {
+        name: "glow".into(),
+        scattering_per_m: [0.0; 3],
+        absorption_per_m: [0.0; 3],
+        emission_per_m: [emission; 3],
+        profile: DensityProfile::Layer { bottom_m: shell_m[0], top_m: shell_m[1] },
+        phase: PhaseFunction::Isotropic,
+    };
+    let world = World::stratified(Shape::Sphere { radius_m, height_m: 1e5 }, [albedo; 3], &[layer]);
+    let (position, direction) = (DVec3::new(0.0, 0.0, 1.0), -DVec3::Z);
+    let ground = View::new(&world, position, direction, FirstOrderBy::Walks).estimate(&budget(40_000));
+    // The integral of cos times the length to a shell at h over cosines: ((R + h)^3 - (h (2 R + h))^1.5) / (3 R^2).
+    let below = |h: f64| ((radius_m + h).powi(3) - (h * (2.0 * radius_m + h)).powf(1.5)) / (3.0 * radius_m * radius_m);
+    let truth = 2.0 * albedo * emission * (below(shell_m[1]) - below(shell_m[0]));
+    assert!(ground.total_error[1] < 0.02 * truth, "{truth} ± {}", ground.total_error[1]);
+    assert_equal(ground.mean.total()[1], truth, ground.total_error[1], "the ground");
 }
 
 #[test]

@@ -134,12 +134,19 @@ fn planted_bugs_are_caught_by_name() {
             "haze, g = -0.99",
             "radiance is",
         ),
+        (
+            "columns that no invocation writes",
+            with_bug("emission_order.wgsl", "column <= ZONAL_COUNT;", "column < min(COSINE_COUNT, ZONAL_COUNT + 1u);"),
+            "air that glows, seven directions",
+            "radiance must be finite",
+        ),
     ];
     for (bug, shaders, name, complaint) in bugs {
         let case = named(name);
         let truth = truth::trace(&case.scene(), WALKS);
         let complaints = |shaders: ShaderSources| {
-            let mut renderer = Renderer::with_shaders(Gpu::new(&DeviceRequest::default()).unwrap(), shaders).unwrap();
+            let request = DeviceRequest { poisons_memory: true, ..DeviceRequest::default() };
+            let mut renderer = Renderer::with_shaders(Gpu::new(&request).unwrap(), shaders).unwrap();
             let (found, _) = judge(&mut renderer, &case, Quality::Low, Some(&truth));
             [found.broken, found.missed].concat()
         };

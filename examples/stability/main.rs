@@ -49,7 +49,8 @@ fn main() {
     if let Some(path) = &options.out {
         table::around_marks(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
-    let mut renderer = Renderer::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
+    let request = DeviceRequest { poisons_memory: true, ..DeviceRequest::default() };
+    let mut renderer = Renderer::new(&request).unwrap_or_else(|error| panic!("{error}"));
     let cases: Vec<Case> = all().into_iter().filter(|case| case.name.contains(&options.part)).collect();
     let walks = if options.long { LONG_WALKS } else { WALKS };
     let truths: Vec<_> = cases.iter().map(|case| truth::of(case, walks)).collect();

@@ -53,17 +53,17 @@ fn main(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_i
     let hits_ground = direction_of(invocation * AZIMUTH_COUNT, mu_h).hits_ground;
     glow[invocation] = glow_along(air_ray(altitude_m, mu, 1.0, mu, hits_ground), hits_ground);
     workgroupBarrier();
-    if invocation > ZONAL_COUNT {
-        return;
-    }
-    var value = column_value(invocation, mu_h);
+    // Columns may be more than directions.
+    for (var column = invocation; column <= ZONAL_COUNT; column += COSINE_COUNT) {
+        var value = column_value(column, mu_h);
 #ifdef CLOSE_SERIES
-    let mean_before = textureLoad(sum_before, vec2<u32>(0u, row), 0).rgb;
-    let last = column_value(0u, mu_h) - mean_before;
-    let last_but_one = mean_before - textureLoad(sum_before_that, vec2<u32>(0u, row), 0).rgb;
-    let zero = vec3<f32>(0.0);
-    let ratio = select(zero, clamp(last / last_but_one, zero, vec3<f32>(MAX_RATIO)), last_but_one > zero);
-    value += ratio / (1.0 - ratio) * (value - textureLoad(sum_before, vec2<u32>(invocation, row), 0).rgb);
+        let mean_before = textureLoad(sum_before, vec2<u32>(0u, row), 0).rgb;
+        let last = column_value(0u, mu_h) - mean_before;
+        let last_but_one = mean_before - textureLoad(sum_before_that, vec2<u32>(0u, row), 0).rgb;
+        let zero = vec3<f32>(0.0);
+        let ratio = select(zero, clamp(last / last_but_one, zero, vec3<f32>(MAX_RATIO)), last_but_one > zero);
+        value += ratio / (1.0 - ratio) * (value - textureLoad(sum_before, vec2<u32>(column, row), 0).rgb);
 #endif
-    textureStore(emission_sum, vec2<u32>(invocation, row), vec4<f32>(value, 0.0));
+        textureStore(emission_sum, vec2<u32>(column, row), vec4<f32>(value, 0.0));
+    }
 }

@@ -71,7 +71,8 @@ pub fn open_renderer(device: Option<&str>) -> Result<Renderer, Failure> {
 /// What is asked of a device by a part of its name or its index, or of the best one.
 pub fn device_request(device: Option<&str>) -> DeviceRequest {
     let validation = if env::var_os(VALIDATION_VARIABLE).is_some() { Validation::On } else { Validation::Off };
-    DeviceRequest { device: device.map(str::to_owned), validation, pipeline_cache: cache_folder() }
+    let device = device.map(str::to_owned);
+    DeviceRequest { device, validation, pipeline_cache: cache_folder(), ..DeviceRequest::default() }
 }
 
 /// Says which device was opened, and keeps its messages.

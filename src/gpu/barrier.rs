@@ -32,9 +32,9 @@ impl Use {
         Self { stage, reads, writes: Access::NONE, layout: Layout::UNDEFINED }
     }
 
-    pub(crate) const fn clear() -> Self {
+    pub(crate) const fn clear(layout: Layout) -> Self {
         let (stage, writes) = (Stage::ALL_TRANSFER, Access::TRANSFER_WRITE);
-        Self { stage, reads: Access::NONE, writes, layout: Layout::UNDEFINED }
+        Self { stage, reads: Access::NONE, writes, layout }
     }
 
     /// Whatever comes next and does not write: another submission, of the host's own.

@@ -27,6 +27,8 @@ pub(crate) struct Context {
     debug: Option<ext::debug_utils::Device>,
     pub(crate) census: Census,
     pub(crate) pipeline_cache: PipelineCache,
+    /// Whether what shaders are the first to write is filled with NaN before: [`super::DeviceRequest::poisons_memory`].
+    pub(crate) poisons: bool,
     /// Label of the recording that is open.
     recording: Mutex<Option<String>>,
     pub(crate) physical_device: vk::PhysicalDevice,
@@ -65,6 +67,7 @@ impl Context {
             allocator: Mutex::new(None),
             debug,
             census: Census::default(),
+            poisons: false,
             recording: Mutex::new(None),
             physical_device: candidate.raw,
             instance,

@@ -15,6 +15,9 @@ pub struct DeviceRequest {
     pub device: Option<String>,
     /// Whether the validation layer watches.
     pub validation: Validation,
+    /// Whether images and buffers hold NaN before shaders write them, so that reading what nobody has written shows. It is so too
+    /// where the validation layer watches.
+    pub poisons_memory: bool,
     /// A folder in which compiled pipelines are kept for the next run; without one they are not.
     pub pipeline_cache: Option<PathBuf>,
 }

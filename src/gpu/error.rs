@@ -48,7 +48,7 @@ pub enum GpuError {
     )]
     NoValidationLayer,
     /// A Vulkan call failed.
-    #[error("{call} failed: {result}")]
+    #[error("{call} failed: {}", words(*result))]
     Vulkan {
         /// The function's name.
         call: &'static str,
@@ -200,7 +200,30 @@ pub enum GpuError {
     },
 }
 
+/// What a result of Vulkan means, and what to do.
+fn words(result: vk::Result) -> String {
+    let remedy = "with a smaller picture or a lower quality";
+    match result {
+        vk::Result::ERROR_DEVICE_LOST => format!(
+            "the device was lost: its driver has crashed or was reset, or a dispatch took longer than it allows; run it again, \
+             and {remedy} if the device is lost again"
+        ),
+        vk::Result::ERROR_OUT_OF_HOST_MEMORY => {
+            format!("the driver has no memory of the host left; end other programs, or try {remedy}")
+        }
+        vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => {
+            format!("the device has no memory left; end other programs that use it, or try {remedy}")
+        }
+        other => other.to_string(),
+    }
+}
+
 impl GpuError {
+    /// Whether the device is lost: it and all that it holds is of no use any more, but another can be opened.
+    pub fn is_device_lost(&self) -> bool {
+        matches!(self, Self::Vulkan { result: vk::Result::ERROR_DEVICE_LOST, .. })
+    }
+
     /// Whether nothing went wrong but that [`super::Pace::stop`] was called.
     pub fn is_stopped(&self) -> bool {
         matches!(self, Self::Stopped(_))

@@ -84,7 +84,9 @@ impl Gpu {
         if request.device.is_none() && !matches!(info.kind, DeviceKind::DiscreteGpu | DeviceKind::IntegratedGpu) {
             tracing::info!("no GPU found: {} computes on the CPU", info.name);
         }
-        Ok(Self(Arc::new(Context::new(instance, candidate, request.pipeline_cache.as_deref())?)))
+        let mut context = Context::new(instance, candidate, request.pipeline_cache.as_deref())?;
+        context.poisons = request.poisons_memory || request.validation == Validation::On;
+        Ok(Self(Arc::new(context)))
     }
 
     /// What the device says of itself.

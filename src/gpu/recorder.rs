@@ -2,6 +2,7 @@
 
 mod handing_over;
 mod pieces;
+mod poison;
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -152,6 +153,7 @@ impl Commands {
         self.kept.data.extend(self.upload_data(&bound)?);
         let data = &self.kept.data[first_data..];
         let descriptors = Descriptors::new(&self.context, &pipeline.0, &bound, data)?;
+        self.poison(&bound);
         let mut barriers = self.barriers(&bound);
         if let Some(barrier) = counted.and_then(|counts| self.state(Resource::Buffer(counts))?.next(Use::counts())) {
             barriers.buffer(barrier);
@@ -210,7 +212,9 @@ impl Commands {
     /// Fills a storage buffer with zeros.
     pub fn clear(&mut self, buffer: &GpuBuffer) {
         let mut barriers = Barriers::default();
-        if let Some(barrier) = self.state(Resource::Buffer(buffer)).and_then(|state| state.next(Use::clear())) {
+        if let Some(barrier) =
+            self.state(Resource::Buffer(buffer)).and_then(|state| state.next(Use::clear(vk::ImageLayout::UNDEFINED)))
+        {
             barriers.buffer(barrier);
         }
         barriers.record(&self.context.device, self.list.raw);

@@ -10,6 +10,12 @@ use super::spectrum;
 
 /// Largest optical depth, seen vertically, by which a shell's majorant may exceed its matter.
 const SHELL_EXCESS: f64 = 0.01;
+/// Tentative collisions of a walk that crosses all emitting matter once, at least: those are where it finds emission, and matter
+/// that glows may hardly weaken light, or not at all.
+pub const EMITTING_DEPTH: f64 = 1.0;
+/// Shells are halved until the least that their matter emits is this share of the most, or they are this share of the air's height.
+const GLOW_LEAST: f64 = 0.5;
+const GLOW_THINNEST: f64 = 1e-3;
 
 /// Constituents over one shape, with what is needed to walk through them and to integrate along rays.
 #[derive(Debug, Clone)]
@@ -50,6 +56,7 @@ impl Air {
         let emits = constituents.iter().any(Constituent::emits);
         let mut air = Self { matter, profiles, columns, shells: Vec::new(), height_m, emits };
         air.shells = air.cut_shells();
+        air.raise_where_it_emits();
         air
     }
 
@@ -134,22 +141,20 @@ impl Air {
         self.shells.partition_point(|s| s.0 <= altitude_m).saturating_sub(1)
     }
 
-    /// Halves shells until the majorant is close to the matter.
+    /// Halves shells until the majorant is close to the matter, and to what it emits.
     fn cut_shells(&self) -> Vec<(f64, f64)> {
         let cuts: Vec<f64> = self.cuts_m().collect();
         let mut pending: Vec<(f64, f64)> = cuts.windows(2).map(|ends| (ends[0], ends[1])).rev().collect();
         let mut shells = Vec::new();
         while let Some((low, high)) = pending.pop() {
-            let bound = |of: fn(&DensityProfile, f64, f64) -> f64| -> f64 {
-                let mut total = spectrum::ZERO;
-                for (matter, profile) in self.matter.iter().zip(&self.profiles) {
-                    spectrum::accumulate(&mut total, of(profile, low, high), matter.extinction_per_m);
-                }
-                spectrum::largest(total)
+            let bounds = |of: fn(&Matter) -> Bands| {
+                [DensityProfile::majorant, DensityProfile::minorant].map(|density| self.bound(density, (low, high), of))
             };
-            let (most, least) = (bound(DensityProfile::majorant), bound(DensityProfile::minorant));
+            let [most, least] = bounds(|matter| matter.extinction_per_m);
+            let [brightest, darkest] = bounds(|matter| matter.emission_per_m);
             let close = (most - least) * (high - low) <= SHELL_EXCESS || least >= 0.9 * most;
-            if close || high - low < 1e-6 * self.height_m {
+            let close_to_glow = darkest >= GLOW_LEAST * brightest || high - low < GLOW_THINNEST * self.height_m;
+            if (close && close_to_glow) || high - low < 1e-6 * self.height_m {
                 shells.push((low, most));
             } else {
                 let middle = 0.5 * (low + high);
@@ -158,5 +163,34 @@ impl Air {
             }
         }
         shells
+    }
+
+    /// Sums over the matter, the largest of the bands: of a bound of the density between two altitudes, times a coefficient.
+    fn bound(
+        &self,
+        of: fn(&DensityProfile, f64, f64) -> f64,
+        (low, high): (f64, f64),
+        coefficient: fn(&Matter) -> Bands,
+    ) -> f64 {
+        let mut total = spectrum::ZERO;
+        for (matter, profile) in self.matter.iter().zip(&self.profiles) {
+            spectrum::accumulate(&mut total, of(profile, low, high), coefficient(matter));
+        }
+        spectrum::largest(total)
+    }
+
+    /// Raises majorants where matter emits, in proportion to what it emits.
+    fn raise_where_it_emits(&mut self) {
+        let ends = self.shells.iter().skip(1).map(|shell| shell.0).chain([self.height_m]);
+        let brightest = |(&(low, _), high): (&(f64, f64), f64)| {
+            (high - low, self.bound(DensityProfile::majorant, (low, high), |matter| matter.emission_per_m))
+        };
+        let shells: Vec<(f64, f64)> = self.shells.iter().zip(ends).map(brightest).collect();
+        let emitted: f64 = shells.iter().map(|(thickness_m, brightest)| thickness_m * brightest).sum();
+        for (shell, (_, brightest)) in self.shells.iter_mut().zip(shells) {
+            if brightest > 0.0 {
+                shell.1 = shell.1.max(EMITTING_DEPTH * brightest / emitted);
+            }
+        }
     }
 }

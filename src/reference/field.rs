@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use welkin_lut::Bands;
 
-use super::air::Tentative;
+use super::air::{EMITTING_DEPTH, Tentative};
 use super::matter::Matter;
 use super::random::Draw;
 use super::shape::clip;
@@ -31,6 +31,9 @@ pub trait DensityField: std::fmt::Debug + Send + Sync {
     fn detail_m(&self) -> f64;
 }
 
+/// How many of its details a field is across, roughly, where nothing else is known of it.
+const DETAILS_ACROSS: f64 = 4.0;
+
 /// A density field filled with one kind of matter.
 #[derive(Debug, Clone)]
 pub struct Body {
@@ -46,6 +49,16 @@ impl Body {
         spectrum::largest(self.matter[0].extinction_per_m)
     }
 
+    /// Rate of tentative collisions at density 1, 1/m: never below the extinction, and where the body emits enough of them for
+    /// walks to find that, see [`EMITTING_DEPTH`].
+    fn collision_rate_per_m(&self) -> f64 {
+        let largest = self.largest_extinction_per_m();
+        if spectrum::largest(self.matter[0].emission_per_m) == 0.0 {
+            return largest;
+        }
+        largest.max(EMITTING_DEPTH / (DETAILS_ACROSS * self.field.detail_m()))
+    }
+
     /// Distances between which a ray lies inside the body's bounds.
     pub fn span(&self, p: DVec3, d: DVec3) -> Option<(f64, f64)> {
         let (min_m, max_m) = self.field.bounds_m();
@@ -56,7 +69,7 @@ impl Body {
 impl Body {
     /// The next tentative collision between two distances: a Poisson process at the field's local majorant.
     pub fn tentative(&self, p: DVec3, d: DVec3, from_m: f64, to_m: f64, unit_exponential: f64) -> Option<Tentative> {
-        let largest = self.largest_extinction_per_m();
+        let largest = self.collision_rate_per_m();
         let (start, end) = self.span(p, d)?;
         let mut t = start.max(from_m);
         let mut remaining = unit_exponential;

@@ -93,6 +93,27 @@ fn first_broken(scene: &Scene, texels: &[[f32; 3]], laws: &[Law]) -> Vec<Broken>
     laws.iter().filter_map(breaks).collect()
 }
 
+/// The first texel in which two pictures of one scene are not the same to the last bit: by how much the second is more.
+pub fn differs(scene: &Scene, first: &Frame, second: &Frame) -> Option<Broken> {
+    let distances = |frame: &Frame| frame.distance_m.iter().map(|&distance_m| [distance_m; 3]).collect::<Vec<_>>();
+    first_difference(scene, "radiance must not depend on what was drawn before", &first.radiance, &second.radiance)
+        .or_else(|| {
+            let law = "transmittance must not depend on what was drawn before";
+            first_difference(scene, law, &first.transmittance, &second.transmittance)
+        })
+        .or_else(|| {
+            let law = "distance must not depend on what was drawn before";
+            first_difference(scene, law, &distances(first), &distances(second))
+        })
+}
+
+fn first_difference(scene: &Scene, law: &'static str, first: &[[f32; 3]], second: &[[f32; 3]]) -> Option<Broken> {
+    let at = first.iter().zip(second).position(|(a, b)| a.map(f32::to_bits) != b.map(f32::to_bits))?;
+    let pixel = [at as u32 % scene.camera.width, at as u32 / scene.camera.width];
+    let value = std::array::from_fn(|i| f64::from(second[at][i]) - f64::from(first[at][i]));
+    Some(Broken { law, pixel, value, view_deg: view_deg(scene, pixel), inputs: inputs(scene) })
+}
+
 /// How much transmittance rises, at most, from one distance to the next longer one.
 pub fn rise(transmittances: &[[f64; 3]]) -> f64 {
     let pairs = transmittances.windows(2).flat_map(|pair| (0..3).map(|band| pair[1][band] - pair[0][band]));

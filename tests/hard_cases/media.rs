@@ -1,5 +1,7 @@
 //! What the air is made of.
 
+use welkin::plan::{Directions, Settings};
+
 use super::{Bound, Case};
 
 pub fn cases() -> Vec<Case> {
@@ -8,11 +10,20 @@ pub fn cases() -> Vec<Case> {
         Case::new("vacuum", "medium = []").quick(),
         Case::new("absorption only, optical depth 13", looking_up.to_owned() + &isotropic("0", "1.625e-3")).quick(),
         Case::new("scattering only, white ground", white("\"rayleigh\"")).quick(),
+        glow(),
     ];
     cases.extend(optical_depths());
     cases.extend(asymmetries());
     cases.extend(scale_heights());
     cases
+}
+
+/// Light of the air alone, above a ground that it lights; fewer directions than the glow's field has coefficients.
+fn glow() -> Case {
+    let layer = "[medium.glow]\nemission_per_m = 1e-6\nprofile.layer = { bottom_m = 90000, top_m = 95000 }";
+    let night = "sun.irradiance = 0\ncamera.elevation_deg = -40\n";
+    let few = |settings| Settings { directions: Directions { below: 3, band: 1, above: 3, azimuths: 4 }, ..settings };
+    Case { settings: few, ..Case::new("air that glows, seven directions", format!("{night}{layer}")) }
 }
 
 /// Matter with an exponential profile of scale height 8 km.

@@ -7,6 +7,7 @@ use std::panic::AssertUnwindSafe;
 use std::path::{Path, PathBuf};
 
 use proptest::test_runner::{Config, TestCaseError, TestError, TestRng, TestRunner};
+use welkin::frame::Frame;
 use welkin::passes::RenderError;
 use welkin::plan::{CloudSettings, Directions, Outputs, Quality, Settings, SourceGrid, VolumeSettings};
 use welkin::renderer::Renderer;
@@ -90,16 +91,26 @@ fn read(text: &str) -> Result<(Fate, Option<Scene>), String> {
 pub fn fate(renderer: &mut Renderer, text: &str, is_rendered: bool) -> Result<Fate, String> {
     let (fate, scene) = read(text)?;
     let Some(scene) = scene.filter(|_| is_rendered) else { return Ok(fate) };
-    let rendered = std::panic::catch_unwind(AssertUnwindSafe(|| renderer.render(&scene, tiny(), CAPTURE)));
-    match rendered.map_err(|_| "the renderer panics".to_owned())? {
-        Ok(rendered) => match laws::broken(&scene, &rendered.frame).first() {
-            Some(broken) => Err(broken.to_string()),
-            None => Ok(Fate::Rendered),
-        },
+    let frame = match rendered(renderer, &scene)? {
+        Ok(frame) => frame,
         // Beyond the device: it says so.
-        Err(RenderError::Gpu(_) | RenderError::Plan(_)) => Ok(Fate::Unsupported),
-        Err(error) => Err(error.to_string()),
+        Err(RenderError::Gpu(_) | RenderError::Plan(_)) => return Ok(Fate::Unsupported),
+        Err(error) => return Err(error.to_string()),
+    };
+    if let Some(broken) = laws::broken(&scene, &frame).first() {
+        return Err(broken.to_string());
     }
+    renderer.forget();
+    let anew = rendered(renderer, &scene)?.map_err(|error| error.to_string())?;
+    match laws::differs(&scene, &frame, &anew) {
+        Some(broken) => Err(broken.to_string()),
+        None => Ok(Fate::Rendered),
+    }
+}
+
+fn rendered(renderer: &mut Renderer, scene: &Scene) -> Result<Result<Frame, RenderError>, String> {
+    let rendered = std::panic::catch_unwind(AssertUnwindSafe(|| renderer.render(scene, tiny(), CAPTURE)));
+    Ok(rendered.map_err(|_| "the renderer panics".to_owned())?.map(|rendered| rendered.frame))
 }
 
 /// Where scenes are kept that failed.
