@@ -65,7 +65,7 @@ enum Task {
 
 /// Milliseconds of the passes of fog, volumes and local lights.
 fn of_media(rendered: &Rendered) -> f64 {
-    let ours = ["volume_light", "local_clusters", "lamp_froxels", "local_media"];
+    let ours = ["volume_light", "local_clusters", "lamp_froxels", "local_media", "media_interpolation"];
     ours.iter().filter_map(|name| rendered.timings.milliseconds.get(*name)).sum()
 }
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use glam::DVec3;
 use welkin::frame::Frame;
 use welkin::gpu::{DeviceRequest, Validation};
-use welkin::plan::{CloudScattering, Decision, Outputs, Plan, Quality, Settings, Skipping};
+use welkin::plan::{CloudScattering, Decision, Outputs, Plan, Quality, Settings, Skipping, VolumeSettings};
 use welkin::probe::{Orders, Ray};
 use welkin::reference::probe::probe_world;
 use welkin::reference::single::first_order;
@@ -18,7 +18,7 @@ use welkin::scene::{Light, Scene};
 const CAPTURE: Outputs = Outputs { capture: true, picture: false };
 /// One in so many pixels is compared where lamps are many.
 const SPARSE: usize = 73;
-const PASSES: [&str; 4] = ["volume_light", "local_clusters", "lamp_froxels", "local_media"];
+const PASSES: [&str; 5] = ["volume_light", "local_clusters", "lamp_froxels", "local_media", "media_interpolation"];
 
 /// Empty space over black ground, without light, and what is said.
 fn dark(text: &str) -> Scene {
@@ -235,13 +235,51 @@ fn a_scene_without_fog_volumes_and_lamps_runs_nothing_of_theirs_and_keeps_no_byt
         assert_eq!(of_media(&plan), [(Decision::Skip, 0); PASSES.len()]);
         assert!(plan.passes.iter().all(|pass| !PASSES.contains(&pass.name) || pass.reason.contains("no fog")));
     }
-    let runs = |text: &str| -> Vec<bool> {
-        let media = of_media(&Renderer::plan(&dark(text), low(), CAPTURE).unwrap());
+    let runs = |scene: &Scene| -> Vec<bool> {
+        let media = of_media(&Renderer::plan(scene, low(), CAPTURE).unwrap());
         media.iter().map(|&(decision, bytes)| decision == Decision::Run && bytes > 0).collect()
     };
-    // Froxels of lamps' light are for many of them.
-    assert_eq!(runs(FOG), [true, true, false, true]);
-    assert_eq!(runs(&format!("{FOG}{}", row_of_lamps(12, 1.0))), [true; PASSES.len()]);
+    // Froxels of lamps' light are for many of them, interpolation for pictures of many pixels.
+    assert_eq!(runs(&dark(FOG)), [true, true, false, true, false]);
+    assert_eq!(runs(&dark(&format!("{FOG}{}", row_of_lamps(12, 1.0)))), [true, true, true, true, false]);
+    assert_eq!(runs(&over_a_bank()), [true, true, false, true, true]);
+}
+
+/// Fog in a low sun, a black ball and a lamp, in so many pixels that not all of them are marched.
+fn over_a_bank() -> Scene {
+    let text = format!(
+        "preset = \"earth\"\nsun = {{ elevation_deg = 12, azimuth_deg = 70 }}\n\
+         camera = {{ altitude_m = 60, elevation_deg = -2, azimuth_deg = 0, vertical_field_of_view_deg = 20, width = 128, height = 80 }}\n\
+         [[fog]]\nextinction_per_m = 0.004\nprofile.exponential.scale_height_m = 40\n{BALL}\
+         [[light.point]]\nname = \"lamp\"\nposition_m = [30, 300, 12]\nintensity = 4e4\n"
+    );
+    Scene::parse(&text, Path::new("fog.toml")).unwrap()
+}
+
+#[test]
+fn media_between_marched_pixels_are_what_marching_each_of_them_finds() {
+    let with = |lattice_permille| {
+        let low = low();
+        Settings { volumes: VolumeSettings { lattice_permille, ..low.volumes }, ..low }
+    };
+    let scene = over_a_bank();
+    let cases = [0, 20, 1000].map(|permille| (scene.clone(), with(permille)));
+    let [marched, between, careless]: [Rendered; 3] = render(&cases).try_into().ok().expect("three");
+    let off = |rendered: &Rendered| {
+        let pairs = rendered.frame.radiance.iter().flatten().zip(marched.frame.radiance.iter().flatten());
+        pairs.map(|(&found, &exact)| f64::from((found - exact).abs() / exact)).collect::<Vec<_>>()
+    };
+    let share =
+        |errors: &[f64], most: f64| errors.iter().filter(|&&error| error <= most).count() as f64 / errors.len() as f64;
+    let (errors, by_careless) = (off(&between), off(&careless));
+    let largest = errors.iter().copied().fold(0.0, f64::max);
+    println!("{} are the same, {} within 2 %, at most {largest}", share(&errors, 0.0), share(&errors, 0.02));
+    // Marching itself jumps by a hundredth in single pixels, where one step more fits between the lamp and the ground.
+    assert!(share(&errors, 0.02) > 0.999 && largest < 0.03, "{largest}");
+    // Controls: some are interpolated, and some must be marched.
+    assert!(share(&errors, 0.0) < 0.5 && share(&by_careless, 0.02) < 0.99, "{}", share(&by_careless, 0.02));
+    assert_eq!(marched.timings.plan.decision("media_interpolation"), Some(Decision::Skip));
+    assert_eq!(between.timings.plan.decision("media_interpolation"), Some(Decision::Run));
 }
 
 /// So many lamps in two rows along the view, of different brightness.

@@ -24,7 +24,7 @@ fn plan(scene: &Scene) -> Plan {
 
 /// The passes of air that gives off light of its own, of what stands before the camera, of local media, of pictures large
 /// enough to be interpolated, and of more wavelengths than three.
-const OF_OTHER_SCENES: [&str; 12] = [
+const OF_OTHER_SCENES: [&str; 13] = [
     "emission_order",
     "view_emission",
     "aerial_optical_depth",
@@ -34,6 +34,7 @@ const OF_OTHER_SCENES: [&str; 12] = [
     "terrain",
     "lamp_froxels",
     "local_media",
+    "media_interpolation",
     "sky_lattice",
     "interpolate",
     "colour",

@@ -6,7 +6,8 @@
 #import welkin::atmosphere::PI
 #import welkin::camera::{view_direction, pixel_angle_rad}
 #ifdef LATTICE
-#import welkin::lattice::{cell_of_entry, CELL, CELL_TOTAL, LIST_HEADER, MOST_GROUPS}
+#import welkin::cell_list::{cell_of_entry, CELL_TOTAL, LIST_HEADER, MOST_GROUPS}
+#import welkin::lattice::CELL
 #endif
 #ifdef SPHERE
 #import welkin::lit_sphere::{is_sphere, sphere_radiance}

@@ -8,9 +8,9 @@
 // not a column: fewer reads of the lattice, for devices of few invocations); LATTICE_TRANSMITTANCE (transmittance matters).
 
 #import welkin::camera::{view_direction, view_through}
-#import welkin::lattice::{
-    cell_kind, centre_node, corner_node, entry_of_cell, CELL, CELL_TOTAL, GROUND_CELL, LIST_HEADER, MIXED_CELL, MOST_GROUPS
-}
+#import welkin::cell_kind::{GROUND_CELL, MIXED_CELL}
+#import welkin::cell_list::{entry_of_cell, CELL_TOTAL, LIST_HEADER, MOST_GROUPS}
+#import welkin::lattice::{cell_kind, centre_node, corner_node, CELL}
 #ifdef WHOLE_CELLS
 #import welkin::loops::counted
 #endif

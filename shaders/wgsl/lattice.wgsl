@@ -30,27 +30,6 @@ const NODE_LAYERS: u32 = TRANSMITTANCE_LAYER + 1u;
 const NODE_LAYERS: u32 = TRANSMITTANCE_LAYER;
 #endif
 
-// What a cell is, in the fourth channel of its centre's diffuse light: too near the horizon or a disc to be interpolated,
-// all sky, or all ground.
-const MIXED_CELL: f32 = 0.0;
-const SKY_CELL: f32 = 1.0;
-const GROUND_CELL: f32 = 2.0;
-
-// The list of cells that are evaluated pixel by pixel: workgroups along three axes, for an indirect dispatch, their number,
-// and then each.
-const CELL_TOTAL: u32 = 3u;
-const LIST_HEADER: u32 = 4u;
-// Workgroups that the least of devices takes along an axis; they go on to the cells beyond.
-const MOST_GROUPS: u32 = 32768u;
-
-fn entry_of_cell(cell: vec2<u32>) -> u32 {
-    return cell.x | (cell.y << 16u);
-}
-
-fn cell_of_entry(entry: u32) -> vec2<u32> {
-    return vec2<u32>(entry & 0xffffu, entry >> 16u);
-}
-
 // A corner of cells, by the number of the cell to its lower right.
 fn corner_node(nodes: texture_2d_array<f32>, corner: vec2<u32>) -> SmoothSky {
     return node(nodes, corner, 0u);
@@ -60,6 +39,7 @@ fn centre_node(nodes: texture_2d_array<f32>, cell: vec2<u32>) -> SmoothSky {
     return node(nodes, cell, NODE_LAYERS);
 }
 
+// welkin::cell_kind, in the fourth channel of its centre's diffuse light.
 fn cell_kind(nodes: texture_2d_array<f32>, cell: vec2<u32>) -> f32 {
     return textureLoad(nodes, cell, NODE_LAYERS + DIFFUSE_LAYER, 0).a;
 }

@@ -8,11 +8,16 @@
 // Fog and volumes take from the air's light and shade the ground; that they shade thin air is left out.
 //
 // Definitions: CLOUDS; VOLUME_GROWTH_PERMILLE, a step's share of the distance; VOLUME_MAX_STEPS; LOCAL_LIGHT_COUNT;
-// LAMP_FROXELS; LOCAL_VOLUMES (some volume is no fog).
+// LAMP_FROXELS; LOCAL_VOLUMES (some volume is no fog); MEDIA_LATTICE (only the pixels of the lattice, or of listed cells:
+// welkin::media_lattice).
 
 #import welkin::atmosphere::{atmosphere, PI}
 #ifdef CLOUDS
 #import welkin::attenuation::mean_transmittance
+#endif
+#ifdef MEDIA_LATTICE
+#import welkin::cell_list::{cell_of_entry, CELL_TOTAL, LIST_HEADER, MOST_GROUPS}
+#import welkin::media_lattice::{centre_pixel, corner_pixel, is_node, CELL}
 #endif
 #import welkin::cluster::{cluster_of, slice_of}
 #import welkin::cluster_members::{next_member, volumes_of, NONE}
@@ -245,13 +250,10 @@ fn ground_share(place: Place, air: ptr<function, Air>) -> vec2<f32> {
     return share * fog_share(place, share);
 }
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if any(id.xy >= textureDimensions(media_radiance_image)) {
-        return;
-    }
-    var ray = ray_of(id.xy);
-    let offset = place_in_step(id.xy, 0.0);
+// Marches a pixel's ray.
+fn march(pixel: vec2<u32>) {
+    var ray = ray_of(pixel);
+    let offset = place_in_step(pixel, 0.0);
 #ifdef CLOUDS
     var phase = phases(ray.direction);
 #endif
@@ -352,6 +354,62 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let behind = transmittance * exp(-air.depth);
     textureStore(media_radiance_image, ray.pixel, vec4<f32>(sum.radiance, ground.x));
     textureStore(media_transmittance_image, ray.pixel, vec4<f32>(transmittance, ground.y));
-    textureStore(media_beam_image, ray.pixel, vec4<f32>(air.beam + behind, 0.0));
+    // The fourth channel tells the lattice where clouds are.
+    textureStore(media_beam_image, ray.pixel, vec4<f32>(air.beam + behind, sum.clouds));
     textureStore(media_diffuse_image, ray.pixel, vec4<f32>(air.diffuse + behind, 0.0));
 }
+
+#ifdef MEDIA_LATTICE
+// Cells whose pixels are marched one by one, and their number: none before those of the lattice are there.
+@group(1) @binding(54) var<storage, read> exact_media_cells: array<u32>;
+
+const GROUP_SIZE: u32 = 64u;
+
+struct Asked {
+    pixel: vec2<u32>,
+    is_asked: bool,
+}
+
+// x, y: cell; z: 0 for the pixel in its corner, 1 for the one in its middle.
+fn asked_of_lattice(id: vec3<u32>) -> Asked {
+    let pixel = select(corner_pixel(id.xy), centre_pixel(id.xy), id.z == 1u);
+    return Asked(pixel, all(pixel < textureDimensions(media_radiance_image)));
+}
+
+fn asked_of_list(index: u32) -> Asked {
+    let cell = cell_of_entry(exact_media_cells[LIST_HEADER + index / (CELL * CELL)]);
+    let pixel = corner_pixel(cell) + vec2<u32>(index % CELL, index / CELL % CELL);
+    return Asked(pixel, all(pixel < textureDimensions(media_radiance_image)) && !is_node(pixel));
+}
+
+@compute @workgroup_size(8, 8)
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) first: u32,
+) {
+    let listed = CELL * CELL * exact_media_cells[CELL_TOTAL];
+    var index = GROUP_SIZE * group.x + first;
+    loop {
+        var asked = asked_of_lattice(id);
+        if listed > 0u {
+            asked = asked_of_list(min(index, listed - 1u));
+            asked.is_asked = asked.is_asked && index < listed;
+        }
+        if asked.is_asked {
+            march(asked.pixel);
+        }
+        continuing {
+            index += GROUP_SIZE * MOST_GROUPS;
+            break if index >= listed;
+        }
+    }
+}
+#else
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if all(id.xy < textureDimensions(media_radiance_image)) {
+        march(id.xy);
+    }
+}
+#endif

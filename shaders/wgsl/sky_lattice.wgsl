@@ -1,46 +1,18 @@
 // Pass: what changes little from pixel to pixel, at the corners and centres of cells of pixels: see welkin::lattice.
 
-#import welkin::camera::{pixel_angle_rad, view_through}
-#import welkin::lattice::{
-    CELL, DIFFUSE_LAYER, GROUND_CELL, MIXED_CELL, NODE_LAYERS, SINGLE_LAYER, SKY_CELL
-}
+#import welkin::camera::view_through
+#import welkin::cell_kind::{kind_of_cell, MIXED_CELL}
+#import welkin::lattice::{CELL, DIFFUSE_LAYER, NODE_LAYERS, SINGLE_LAYER}
 #ifdef LATTICE_TRANSMITTANCE
 #import welkin::lattice::TRANSMITTANCE_LAYER
 #endif
 #ifdef OVERLAY
 #import welkin::lattice::{GLOW_LAYER, GROUND_DIFFUSE_LAYER, GROUND_STRAIGHT_LAYER}
 #endif
-#import welkin::observer::{observer, DISC_COUNT}
+#import welkin::observer::observer
 #import welkin::smooth_sky::{smooth_sky, SINGLE_COUNT}
 
 @group(0) @binding(8) var sky_lattice_image: texture_storage_2d_array<rgba32float, write>;
-
-// What a cell around a direction is. No point of it is farther from its centre than its corners are, nor does a zenith
-// angle change by more than the direction does.
-fn kind_of_cell(centre: vec2<f32>, view: vec3<f32>, zenith_rad: f32) -> f32 {
-    let half_side = 0.5 * f32(CELL);
-    var chord = 0.0;
-    for (var i = 0u; i < 4u; i++) {
-        let corner = centre + half_side * (2.0 * vec2<f32>(f32(i % 2u), f32(i / 2u)) - 1.0);
-        chord = max(chord, distance(view_through(corner), view));
-    }
-    let pixel_rad = pixel_angle_rad(view);
-    // The arc over a chord below 1 is at most 4.8 % longer.
-    let reach_rad = 1.05 * chord + pixel_rad;
-    var kind = select(SKY_CELL, GROUND_CELL, zenith_rad > observer.view.horizon_rad);
-    if chord > 1.0 || abs(zenith_rad - observer.view.horizon_rad) <= reach_rad {
-        kind = MIXED_CELL;
-    }
-    for (var light = 0u; light < DISC_COUNT; light++) {
-        let disc = observer.lights[light];
-        let shown = disc.angular_radius_rad > 0.0 && zenith_rad <= observer.view.horizon_rad;
-        let disc_rad = max(disc.angular_radius_rad, pixel_rad) + pixel_rad;
-        if shown && distance(view, disc.direction) < disc_rad + reach_rad {
-            kind = MIXED_CELL;
-        }
-    }
-    return kind;
-}
 
 fn put(at: vec2<u32>, layer: u32, light: vec3<f32>) {
     textureStore(sky_lattice_image, at, layer, vec4<f32>(light, 0.0));
@@ -59,7 +31,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let sky = smooth_sky(view, zenith_rad, zenith_rad > observer.view.horizon_rad);
     var kind = MIXED_CELL;
     if is_centre {
-        kind = kind_of_cell(place, view, zenith_rad);
+        kind = kind_of_cell(place, 0.5 * f32(CELL), view, zenith_rad);
     }
     let first = NODE_LAYERS * id.z;
     var diffuse = sky.diffuse;

@@ -55,6 +55,9 @@ pub struct Arguments {
     /// By how much pixels may differ from what they would be if each were evaluated for itself; 0 evaluates each
     #[arg(long, value_name = "SHARE")]
     lattice_tolerance: Option<f64>,
+    /// Thousandths by which fog and volumes between marched pixels may differ from marched ones; 0 marches each
+    #[arg(long, value_name = "PERMILLE")]
+    media_lattice: Option<u32>,
     /// Keep tables as half floats
     #[arg(long)]
     half_tables: bool,
@@ -131,6 +134,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             (scene.camera.width, scene.camera.height) = (width, height);
             let mut settings = named.settings();
             settings.lattice_tolerance = arguments.lattice_tolerance.unwrap_or(settings.lattice_tolerance);
+            let volumes = &mut settings.volumes;
+            volumes.lattice_permille = arguments.media_lattice.unwrap_or(volumes.lattice_permille);
             if arguments.half_tables {
                 settings.table_format = TableFormat::Float16;
             }

@@ -2,7 +2,7 @@
 
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need, Surface};
+use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
 const NAME: &str = "clouds";
 
@@ -131,11 +131,7 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     if is_whole {
         IMAGES.iter().chain([&DISTANCE]).for_each(|[_, samples]| recording.resources.release(samples));
     }
-    let surface = match facts.surface {
-        Some(Surface::Terrain) => recording.resources.existing_image("terrain_image").cloned(),
-        Some(Surface::Given(_)) => recording.resources.existing_image("foreground_image").cloned(),
-        Some(Surface::Rays) | None => None,
-    };
+    let surface = recording.surface();
     images.extend(surface.map(|surface| ("surface_image", surface)));
     let bound: Vec<_> = images.iter().map(|(name, image)| (*name, image)).collect();
     recording.dispatch(NAME, &[], &bound, Work::Invocations(shape.extent()))

@@ -3,7 +3,7 @@
 use super::display::pre_exposure;
 use super::{Pass, Recording, RenderError};
 use crate::gpu::{GpuImage, ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint, Need, Surface, lattice_cell};
+use crate::plan::{Declaration, Facts, Fingerprint, Need, lattice_cell};
 
 const NAME: &str = "compose";
 
@@ -81,11 +81,7 @@ pub(super) fn images(recording: &mut Recording) -> Result<Images, RenderError> {
         recording.resources.image("transmittance_image", shape, ImageFormat::Rgba32Float)?;
         recording.resources.image("distance_image", shape, ImageFormat::R32Float)?;
     }
-    let surface = match recording.facts.surface {
-        Some(Surface::Terrain) => recording.resources.existing_image("terrain_image").cloned(),
-        Some(Surface::Given(_)) => recording.resources.existing_image("foreground_image").cloned(),
-        Some(Surface::Rays) | None => None,
-    };
+    let surface = recording.surface();
     Ok(Images { shape, surface })
 }
 

@@ -5,7 +5,7 @@ use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count, local_light_count};
 use super::{lamp_froxels, local_clusters, ordinates, sky_view, volume_light};
-use crate::plan::{CloudScattering, Facts, Surface, TableFormat, Treatment, lattice_cell};
+use crate::plan::{CloudScattering, Facts, Surface, TableFormat, Treatment, lattice_cell, media_cell};
 use crate::probe::Orders;
 
 /// Invocations of a workgroup that every Vulkan device takes.
@@ -16,6 +16,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
     let (settings, groups, directions) = (&facts.settings, &facts.groups, &facts.settings.directions);
     let grid = &facts.source_grid();
     let lattice_cell = lattice_cell(facts).ok();
+    let media_cell = media_cell(facts).ok();
     let has_overlay = facts.has_overlay();
     let numbers = [
         ("CONSTITUENT_COUNT", groups.count),
@@ -86,6 +87,8 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("LOCAL_LIGHT_SAMPLES", volumes.lamp_samples),
         ("VOLUME_GROWTH_PERMILLE", volumes.step_permille),
         ("VOLUME_MAX_STEPS", volumes.max_steps),
+        ("MEDIA_CELL", media_cell.unwrap_or(1)),
+        ("MEDIA_PERMILLE", volumes.lattice_permille),
     ];
     let flags = [
         ("AIR", facts.has_air()),
@@ -102,6 +105,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("CLOUD_ORDINATES", facts.ordinate_groups() > 0),
         ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),
         ("LOCAL_MEDIA", facts.has_local_media()),
+        ("MEDIA_LATTICE", facts.has_local_media() && media_cell.is_some()),
         ("LOCAL_VOLUMES", facts.volumes.len() as u32 > facts.fog_count()),
         ("LAMP_FROXELS", lamp_froxels::are_there(facts)),
         ("VOLUME_NOISE", facts.has_volume_noise()),

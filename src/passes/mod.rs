@@ -33,6 +33,7 @@ mod isotropic_series;
 mod lamp_froxels;
 mod local_clusters;
 mod local_media;
+mod media_interpolation;
 mod multiple_scattering;
 mod optical_depth;
 pub mod ordinates;
@@ -102,12 +103,13 @@ pub const CLOUDS: [Pass; 11] = [
 ];
 
 /// What makes a frame of them, in order.
-pub const FRAME: [Pass; 10] = [
+pub const FRAME: [Pass; 11] = [
     terrain::PASS,
     clouds::PASS,
     cloud_reconstruction::PASS,
     lamp_froxels::PASS,
     local_media::PASS,
+    media_interpolation::PASS,
     sky_lattice::PASS,
     interpolate::PASS,
     compose::PASS,

@@ -15,7 +15,7 @@ use super::{
     sky_view,
 };
 use crate::gpu::{Commands, Completed, GpuBuffer, GpuImage, Resource, Work};
-use crate::plan::Facts;
+use crate::plan::{Facts, Surface};
 
 /// Parameter blocks of a frame, by the names of the shaders' variables.
 #[derive(Default)]
@@ -122,6 +122,16 @@ impl<'a> Recording<'a> {
     ) -> Result<(), RenderError> {
         let definitions = self.with_flags(flags);
         dispatch(self.resources, &mut self.commands, pass, definitions, &self.parameters, images, work)
+    }
+
+    /// What stands before the camera: hills, or what a host has drawn.
+    pub fn surface(&self) -> Option<GpuImage> {
+        let name = match self.facts.surface? {
+            Surface::Terrain => "terrain_image",
+            Surface::Given(_) => "foreground_image",
+            Surface::Rays => return None,
+        };
+        self.resources.existing_image(name).cloned()
     }
 
     /// Fills a storage buffer with zeros.

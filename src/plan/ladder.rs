@@ -154,6 +154,7 @@ fn volumes_between(a: &VolumeSettings, b: &VolumeSettings, share: f64) -> Volume
         beam_samples: count(a.beam_samples, b.beam_samples),
         lamp_samples: count(a.lamp_samples, b.lamp_samples),
         lamp_share: count(a.lamp_share, b.lamp_share),
+        lattice_permille: count(a.lattice_permille, b.lattice_permille),
         ..*nearer(a, b, share)
     }
 }

@@ -21,6 +21,8 @@ pub struct VolumeSettings {
     pub lamp_samples: u32,
     /// A local light is left out where it brings less than this part, one in so many, of what it brings to its neighbour.
     pub lamp_share: u32,
+    /// Thousandths by which pixels between others may differ at most from what they would be if each were marched; 0 marches each.
+    pub lattice_permille: u32,
 }
 
 impl VolumeSettings {
@@ -35,6 +37,7 @@ impl VolumeSettings {
             beam_samples: 16,
             lamp_samples: 2,
             lamp_share: 1000,
+            lattice_permille: 10,
         };
         match quality {
             Quality::Low => Self {
@@ -45,6 +48,7 @@ impl VolumeSettings {
                 beam_samples: 8,
                 lamp_samples: 1,
                 lamp_share: 300,
+                lattice_permille: 20,
                 ..medium
             },
             Quality::Medium => medium,
@@ -56,6 +60,7 @@ impl VolumeSettings {
                 beam_samples: 24,
                 lamp_samples: 4,
                 lamp_share: 3000,
+                lattice_permille: 5,
                 ..medium
             },
             Quality::Ultra => Self {
@@ -66,6 +71,7 @@ impl VolumeSettings {
                 beam_samples: 32,
                 lamp_samples: 8,
                 lamp_share: 10_000,
+                lattice_permille: 2,
                 ..medium
             },
         }
