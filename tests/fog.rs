@@ -275,9 +275,10 @@ fn media_between_marched_pixels_are_what_marching_each_of_them_finds() {
     let largest = errors.iter().copied().fold(0.0, f64::max);
     println!("{} are the same, {} within 2 %, at most {largest}", share(&errors, 0.0), share(&errors, 0.02));
     // Marching itself jumps by a hundredth in single pixels, where one step more fits between the lamp and the ground.
-    assert!(share(&errors, 0.02) > 0.999 && largest < 0.03, "{largest}");
+    let holds = |errors: &[f64]| share(errors, 0.02) > 0.999 && errors.iter().all(|&error| error < 0.03);
+    assert!(holds(&errors), "{largest}");
     // Controls: some are interpolated, and some must be marched.
-    assert!(share(&errors, 0.0) < 0.5 && share(&by_careless, 0.02) < 0.99, "{}", share(&by_careless, 0.02));
+    assert!(share(&errors, 0.0) < 0.5 && !holds(&by_careless), "{}", share(&by_careless, 0.02));
     assert_eq!(marched.timings.plan.decision("media_interpolation"), Some(Decision::Skip));
     assert_eq!(between.timings.plan.decision("media_interpolation"), Some(Decision::Run));
 }

@@ -5,18 +5,24 @@
 // tell the middles of three cells side by side, along columns what its own corners and middle then lack. Corners along its edges and
 // middles above and below tell the same another way, and where they differ there is an edge or a kink.
 //
-// Definitions: MEDIA_CELL; MEDIA_PERMILLE, thousandths by which interpolation may err; CLOUDS; SURFACE; LOCAL_VOLUMES.
+// Definitions: MEDIA_CELL; MEDIA_PERMILLE, thousandths by which interpolation may err; CLOUDS; SURFACE;
+// LOCAL_VOLUMES; LOCAL_LIGHT_COUNT.
 
 #import welkin::camera::view_direction
 #import welkin::cell_kind::{kind_of_cell, MIXED_CELL}
 #import welkin::cell_list::{entry_of_cell, CELL_TOTAL, LIST_HEADER, MOST_GROUPS}
-#import welkin::media_lattice::{centre_pixel, corner_pixel, is_node, whole_cells, CELL}
-#ifdef LOCAL_VOLUMES
 #import welkin::cluster::{cluster_of, SLICES}
-#import welkin::cluster_members::{next_member, volumes_of, NONE}
+#import welkin::media_lattice::{centre_pixel, corner_pixel, is_node, whole_cells, CELL, TOLERANCE}
+#if LOCAL_LIGHT_COUNT > 0
+#import welkin::cluster_members::{lamps_of, next_member, NONE}
+#import welkin::local_light::local_lights
+#endif
+#import welkin::media_march::{observer_position, NEVER_M}
+#ifdef LOCAL_VOLUMES
+#import welkin::cell_volumes::{find_volumes, forget_volumes, look_at_volumes, shows_edge_of_volume}
 #endif
 #ifdef SURFACE
-#import welkin::media_march::{surface_image, NEVER_M}
+#import welkin::media_march::surface_image
 #endif
 
 @group(1) @binding(50) var media_radiance_image: texture_storage_2d<rgba32float, read_write>;
@@ -26,7 +32,6 @@
 @group(1) @binding(54) var<storage, read_write> exact_media_cells: array<atomic<u32>>;
 
 const IMAGES: u32 = 4u;
-const TOLERANCE: f32 = #{MEDIA_PERMILLE}.0 * 0.001;
 // How far a parabola may rise over its chords, in tolerances: it is followed, but not trusted where it is steep.
 const STEEPEST: f32 = 4.0;
 // Below these transmittances and shares of light, errors count as if they were so large.
@@ -123,13 +128,32 @@ fn shows_horizon_or_disc(cell: vec2<u32>) -> bool {
     return kind_of_cell(vec2<f32>(pixel) + 0.5, half_side, view, atan2(length(view.xy), view.z)) == MIXED_CELL;
 }
 
-// Whether a local volume lies in a tile's slices, of which each invocation looks at some.
-fn holds_volume(cell: vec2<u32>, first: u32) -> bool {
+#if LOCAL_LIGHT_COUNT > 0
+// A lamp, and the middle of what it lights on the ground, are kept out of cells by so many of their half diagonals.
+const LAMP_REACH: f32 = 3.0;
+
+fn is_seen_near(view: vec3<f32>, to: vec3<f32>, reach: f32) -> bool {
+    return distance(normalize(to), view) < reach;
+}
+#endif
+
+// Whether a local light stands in the cell or beside it, or the middle of what it lights: that may be small. Of the slices of the cell's tile
+// each invocation looks at some.
+fn shows_lamp(cell: vec2<u32>, first: u32) -> bool {
     var found = false;
-#ifdef LOCAL_VOLUMES
+#if LOCAL_LIGHT_COUNT > 0
+    let view = view_direction(centre_pixel(cell));
+    let reach = LAMP_REACH * distance(view, view_direction(corner_pixel(cell)));
+    let eye = observer_position();
     for (var slice = first; slice < SLICES; slice += CELL * CELL) {
-        var members = volumes_of(cluster_of(corner_pixel(cell), slice));
-        found = found || next_member(&members) != NONE;
+        var lamps = lamps_of(cluster_of(corner_pixel(cell), slice));
+        for (var light = next_member(&lamps); light != NONE; light = next_member(&lamps)) {
+            let lamp = local_lights[light];
+            let down_m = lamp.position_m.z / max(-lamp.axis.z, 0.01);
+            let foot_m = vec3<f32>(lamp.position_m.xy, 0.0);
+            found = found || is_seen_near(view, lamp.position_m - eye, reach) || is_seen_near(view, foot_m - eye, reach)
+                || is_seen_near(view, lamp.position_m + down_m * lamp.axis - eye, reach);
+        }
     }
 #endif
     return found;
@@ -186,8 +210,15 @@ fn main(
     let is_whole = all(cell < whole);
     if first == 0u {
         atomicStore(&is_spoilt, 0u);
+#ifdef LOCAL_VOLUMES
+        forget_volumes();
+#endif
     }
     workgroupBarrier();
+#ifdef LOCAL_VOLUMES
+    find_volumes(cell, first);
+    workgroupBarrier();
+#endif
     var spoils = !is_whole;
     if is_whole {
         let middle = clamp(cell, vec2<u32>(1u), whole - 2u);
@@ -199,13 +230,20 @@ fn main(
         if first == IMAGES {
             spoils = shows_horizon_or_disc(cell);
         }
-        spoils = spoils || holds_volume(cell, first) || leaves_surface(cell, id.xy);
+        spoils = spoils || leaves_surface(cell, id.xy) || shows_lamp(cell, first);
+#ifdef LOCAL_VOLUMES
+        spoils = look_at_volumes(corner_pixel(cell) + id.xy) || spoils;
+#endif
     }
     if spoils {
         atomicOr(&is_spoilt, 1u);
     }
     workgroupBarrier();
-    if atomicLoad(&is_spoilt) > 0u {
+    var is_listed = atomicLoad(&is_spoilt) > 0u;
+#ifdef LOCAL_VOLUMES
+    is_listed = is_listed || shows_edge_of_volume();
+#endif
+    if is_listed {
         if first == 0u {
             list(cell);
         }
