@@ -48,7 +48,7 @@ const EFFECTS: [(&str, &[&str]); 7] = [
     ("airglow", &["emission_order", "view_emission"]),
     ("mountains", &["terrain", "aerial_optical_depth", "aerial_perspective"]),
     ("clouds", &["cloud", "ordinates"]),
-    ("fog and lamps", &["volume_light", "local_"]),
+    ("fog and lamps", &["volume_light", "local_", "lamp_froxels", "media_interpolation"]),
     ("picture", &["sky_lattice", "interpolate", "compose", "colour", "display"]),
 ];
 
@@ -151,8 +151,20 @@ fn lift(scene: &mut Scene) {
 fn clear_sky(settings: Settings) -> Result<(), Box<dyn Error>> {
     let mut scene = read("noon", None)?;
     let facts = Facts::new(&scene, settings, Orders::All, OUTPUTS)?;
-    let others =
-        ["aerial_", "cloud", "cluster", "emission_order", "local_", "ordinates", "terrain", "view_emission", "volume"];
+    let others = [
+        "aerial_",
+        "cell_volumes",
+        "cloud",
+        "cluster",
+        "emission_order",
+        "lamp_",
+        "local_",
+        "media_",
+        "ordinates",
+        "terrain",
+        "view_emission",
+        "volume",
+    ];
     let sources = stripped::without(&stripped::absent(&definitions(&facts)), &others);
     let alone =
         || Ok::<_, Box<dyn Error>>(Renderer::with_shaders(Gpu::new(&DeviceRequest::default())?, sources.clone())?);
