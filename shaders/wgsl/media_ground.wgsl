@@ -18,15 +18,19 @@
 // Points on the way through an uneven volume.
 const SHADE_SAMPLES: u32 = 6u;
 
+// Depth by which a local volume dims the first light's beam to a place: what goes on nearly straight is not counted.
+fn shading_depth(index: u32, place: Place) -> f32 {
+    let toward = observer.lights[0].direction;
+    let forward = (1.0 - volumes[index].similarity) * volumes[index].scattering_per_m.g;
+    let length_m = local_length_m(index, place.p, toward, way_to_top_m(place, toward), SHADE_SAMPLES);
+    return (volumes[index].extinction_per_m.g - forward) * length_m;
+}
+
 // Share of the first light's beam that local volumes let through to a place, straight or nearly so.
 fn volume_share(place: Place) -> f32 {
-    let toward = observer.lights[0].direction;
-    let air_m = way_to_top_m(place, toward);
     var depth = 0.0;
     for (var i = FOG_COUNT; i < VOLUME_COUNT; i++) {
-        let forward = (1.0 - volumes[i].similarity) * volumes[i].scattering_per_m.g;
-        let length_m = local_length_m(i, place.p, toward, air_m, SHADE_SAMPLES);
-        depth += (volumes[i].extinction_per_m.g - forward) * length_m;
+        depth += shading_depth(i, place);
     }
     return exp(-depth);
 }

@@ -211,7 +211,7 @@ fn main(
     if first == 0u {
         atomicStore(&is_spoilt, 0u);
 #ifdef LOCAL_VOLUMES
-        forget_volumes();
+        forget_volumes(min(cell, whole - 1u));
 #endif
     }
     workgroupBarrier();
