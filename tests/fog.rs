@@ -245,12 +245,19 @@ fn a_scene_without_fog_volumes_and_lamps_runs_nothing_of_theirs_and_keeps_no_byt
     assert_eq!(runs(&over_a_bank()), [true, true, false, true, true]);
 }
 
-/// Fog in a low sun, a black ball and a lamp, in so many pixels that not all of them are marched.
+/// Fog in a low sun, a lamp and black balls of a few pixels, in so many pixels that not all of them are marched.
 fn over_a_bank() -> Scene {
+    let ball = |i: usize| {
+        let [east, up] = [13 * i as i32 - 50, 40 + 3 * i as i32];
+        format!(
+            "[[volumes]]\nname = \"{i}\"\nshape = \"ellipsoid\"\ncentre_m = [{east}, 400, {up}]\nsize_m = [5, 5, 5]\nabsorption_per_m = 1\n"
+        )
+    };
+    let balls: String = (0..8).map(ball).collect();
     let text = format!(
         "preset = \"earth\"\nsun = {{ elevation_deg = 12, azimuth_deg = 70 }}\n\
          camera = {{ altitude_m = 60, elevation_deg = -2, azimuth_deg = 0, vertical_field_of_view_deg = 20, width = 128, height = 80 }}\n\
-         [[fog]]\nextinction_per_m = 0.004\nprofile.exponential.scale_height_m = 40\n{BALL}\
+         [[fog]]\nextinction_per_m = 0.004\nprofile.exponential.scale_height_m = 40\n{balls}\
          [[light.point]]\nname = \"lamp\"\nposition_m = [30, 300, 12]\nintensity = 4e4\n"
     );
     Scene::parse(&text, Path::new("fog.toml")).unwrap()
