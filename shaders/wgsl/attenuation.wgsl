@@ -18,3 +18,9 @@ fn mean_transmittance(tau: vec3<f32>) -> vec3<f32> {
 fn mean_between(first: vec3<f32>, last: vec3<f32>) -> vec3<f32> {
     return exp(-min(first, last)) * mean_transmittance(abs(last - first));
 }
+
+// The share of an even slice's opacity that lies before a share of its length.
+fn share_of_opacity(tau: vec3<f32>, length_share: f32) -> vec3<f32> {
+    let is_clear = tau < vec3<f32>(1e-4);
+    return select(opacity(length_share * tau) / opacity(select(tau, vec3<f32>(1.0), is_clear)), vec3<f32>(length_share), is_clear);
+}

@@ -84,7 +84,8 @@ fn cut_at_layer(ray: ptr<function, Ray>, layer: u32, bottom_m: f32, top_m: f32) 
     (*ray).crossings_m[4u * layer + 3u] = top.y;
 }
 
-fn ray_of(pixel: vec2<u32>) -> Ray {
+// A pixel's ray without what stands before the camera.
+fn clear_way_of(pixel: vec2<u32>) -> Ray {
     var ray: Ray;
     ray.pixel = pixel;
     ray.direction = view_direction(pixel);
@@ -93,12 +94,6 @@ fn ray_of(pixel: vec2<u32>) -> Ray {
         ray.end_m = geometry::distance_to_shell_from_above(atmosphere.radius_m, observer.altitude_m, ray.direction.z, 0.0);
         ray.meets_ground = true;
     }
-#ifdef SURFACE
-    // Without a surface it is never.
-    let surface_m = textureLoad(surface_image, pixel, 0).a;
-    ray.meets_ground = ray.meets_ground && surface_m > ray.end_m;
-    ray.end_m = min(ray.end_m, surface_m);
-#endif
 #if FOG_COUNT > 0
     for (var i = 0u; i < FOG_COUNT; i++) {
         cut_at_layer(&ray, i, volumes[i].bottom_m, volumes[i].top_m);
@@ -109,6 +104,17 @@ fn ray_of(pixel: vec2<u32>) -> Ray {
         let base_m = cloud_layers[layer].base_m;
         cut_at_layer(&ray, FOG_COUNT + layer, base_m, base_m + cloud_layers[layer].thickness_m);
     }
+#endif
+    return ray;
+}
+
+fn ray_of(pixel: vec2<u32>) -> Ray {
+    var ray = clear_way_of(pixel);
+#ifdef SURFACE
+    // Without a surface it is never.
+    let surface_m = textureLoad(surface_image, pixel, 0).a;
+    ray.meets_ground = ray.meets_ground && surface_m > ray.end_m;
+    ray.end_m = min(ray.end_m, surface_m);
 #endif
     return ray;
 }

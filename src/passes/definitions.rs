@@ -5,7 +5,7 @@ use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{ZONAL_COUNT, cloud_term_count, emission_breakpoints_m, lobe_count, local_light_count};
 use super::{lamp_froxels, local_clusters, ordinates, sky_view, volume_light};
-use crate::plan::{CloudScattering, Facts, Surface, TableFormat, Treatment, lattice_cell, media_cell};
+use crate::plan::{CloudScattering, Facts, Surface, TableFormat, Treatment, lattice_cell, media_cell, media_froxels};
 use crate::probe::Orders;
 
 /// Invocations of a workgroup that every Vulkan device takes.
@@ -106,6 +106,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),
         ("LOCAL_MEDIA", facts.has_local_media()),
         ("MEDIA_LATTICE", facts.has_local_media() && media_cell.is_some()),
+        ("MEDIA_FROXELS", media_froxels(facts).is_ok()),
         ("LOCAL_VOLUMES", facts.volumes.len() as u32 > facts.fog_count()),
         ("LAMP_FROXELS", lamp_froxels::are_there(facts)),
         ("VOLUME_NOISE", facts.has_volume_noise()),

@@ -2,8 +2,8 @@
 //! `media_interpolation` fills the others.
 
 use super::{Pass, Recording, RenderError, media_interpolation, volume_light};
-use crate::gpu::{ImageFormat, ImageShape, Work};
-use crate::plan::{Declaration, Facts, Fingerprint};
+use crate::gpu::{GpuImage, ImageFormat, ImageShape, Work};
+use crate::plan::{Declaration, Facts, Fingerprint, media_froxels};
 
 const NAME: &str = "local_media";
 
@@ -13,15 +13,18 @@ pub const PASS: Pass = Pass {
         name: NAME,
         need: volume_light::need,
         reads: &READS,
-        writes: &IMAGES,
+        writes: &WRITES,
         inputs,
-        bytes: |facts| 4 * shape(facts).texels() * ImageFormat::Rgba32Float.texel_bytes(),
+        bytes: |facts| {
+            let froxels = froxel_shape(facts).map_or(0, |shape| shape.texels());
+            (4 * shape(facts).texels() + froxels) * ImageFormat::Rgba32Float.texel_bytes()
+        },
     },
     record,
 };
 
 /// What a ray is marched through, and meets.
-const READS: [&str; 15] = [
+const READS: [&str; 16] = [
     "cloud_shape_volume",
     "cloud_erosion_volume",
     "cloud_weather_map",
@@ -37,11 +40,18 @@ const READS: [&str; 15] = [
     "cluster_masks",
     "lamp_froxels",
     "terrain_image",
+    "surface_cells",
 ];
 
 /// What is known of each pixel.
-pub(super) const IMAGES: [&str; 4] =
+const IMAGES: [&str; 4] =
     ["media_radiance_image", "media_transmittance_image", "media_beam_image", "media_diffuse_image"];
+
+/// What is known before places on the lattice's rays.
+const FROXELS: &str = "media_froxels";
+
+/// All that it writes.
+pub(super) const WRITES: [&str; 5] = [IMAGES[0], IMAGES[1], IMAGES[2], IMAGES[3], FROXELS];
 
 pub(super) fn inputs(facts: &Facts) -> Fingerprint {
     let scene = facts.scene;
@@ -54,8 +64,15 @@ fn shape(facts: &Facts) -> ImageShape {
     ImageShape::D2(facts.scene.camera.width, facts.scene.camera.height)
 }
 
+fn froxel_shape(facts: &Facts) -> Option<ImageShape> {
+    media_froxels(facts).ok().map(|[columns, rows, layers]| ImageShape::D3(columns, rows, layers))
+}
+
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = shape(recording.facts);
+    if let Some(froxels) = froxel_shape(recording.facts) {
+        recording.resources.image(FROXELS, froxels, ImageFormat::Rgba32Float)?;
+    }
     for name in IMAGES {
         recording.resources.image(name, shape, ImageFormat::Rgba32Float)?;
     }
@@ -73,6 +90,10 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
 /// Marches pixels.
 pub(super) fn march(recording: &mut Recording, work: Work) -> Result<(), RenderError> {
     let surface = recording.surface();
-    let images: Vec<_> = surface.iter().map(|image| ("surface_image", image)).collect();
-    recording.dispatch(NAME, &[], &images, work)
+    recording.dispatch(NAME, &[], &surface_images(&surface), work)
+}
+
+/// What stands before the camera, under the name that shaders have for it.
+pub(super) fn surface_images(surface: &Option<GpuImage>) -> Vec<(&'static str, &GpuImage)> {
+    surface.iter().map(|image| ("surface_image", image)).collect()
 }

@@ -11,12 +11,18 @@ pub const PASS: Pass = Pass {
     declaration: Declaration {
         name: NAME,
         need,
-        reads: &local_media::IMAGES,
+        reads: &READS,
         writes: &["exact_media_cells"],
         inputs: local_media::inputs,
         bytes: |facts| cells(facts).map_or(0, list_bytes),
     },
     record,
+};
+
+/// Pixels and froxels, and for which distances there are any of these.
+const READS: [&str; 6] = {
+    let [radiance, transmittance, beam, diffuse, froxels] = local_media::WRITES;
+    [radiance, transmittance, beam, diffuse, froxels, "surface_cells"]
 };
 
 fn need(facts: &Facts) -> Need {
@@ -54,7 +60,6 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let Some([columns, rows]) = cells(recording.facts) else { return Ok(()) };
     let list = empty_list(recording, [columns, rows])?;
     let surface = recording.surface();
-    let images: Vec<_> = surface.iter().map(|image| ("surface_image", image)).collect();
-    recording.dispatch(NAME, &[], &images, Work::Workgroups([columns, rows, 1]))?;
+    recording.dispatch(NAME, &[], &local_media::surface_images(&surface), Work::Workgroups([columns, rows, 1]))?;
     local_media::march(recording, Work::Counted(&list))
 }

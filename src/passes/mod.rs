@@ -44,6 +44,7 @@ mod resources;
 mod scattering_table;
 mod sky_lattice;
 mod sky_view;
+mod surface_cells;
 mod terrain;
 mod view_emission;
 mod view_optical_depth;
@@ -103,11 +104,12 @@ pub const CLOUDS: [Pass; 11] = [
 ];
 
 /// What makes a frame of them, in order.
-pub const FRAME: [Pass; 11] = [
+pub const FRAME: [Pass; 12] = [
     terrain::PASS,
     clouds::PASS,
     cloud_reconstruction::PASS,
     lamp_froxels::PASS,
+    surface_cells::PASS,
     local_media::PASS,
     media_interpolation::PASS,
     sky_lattice::PASS,

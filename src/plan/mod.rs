@@ -32,7 +32,7 @@ pub use declaration::{Declaration, Fingerprint, Need};
 pub use facts::{Facts, Outputs, SpectralPart, Surface, Viewpoint};
 pub use ladder::{LadderStep, Rung};
 pub use lag::elevation_slack_rad;
-pub use lattice::{lattice_cell, media_cell};
+pub use lattice::{lattice_cell, media_cell, media_froxels};
 pub use multiple_scattering::{MultipleScattering, Treatment, error_in_shadow, expected_ringing};
 pub use named_settings::NamedSettings;
 pub use scene_traits::{SceneKind, SceneTraits};
