@@ -48,7 +48,7 @@ const EFFECTS: [(&str, &[&str]); 7] = [
     ("airglow", &["emission_order", "view_emission"]),
     ("mountains", &["terrain", "aerial_optical_depth", "aerial_perspective"]),
     ("clouds", &["cloud", "ordinates"]),
-    ("fog and lamps", &["volume_light", "local_", "lamp_froxels", "media_interpolation"]),
+    ("fog and lamps", &["volume_light", "local_", "lamp_froxels", "surface_cells", "media_interpolation"]),
     ("picture", &["sky_lattice", "interpolate", "compose", "colour", "display"]),
 ];
 

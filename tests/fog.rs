@@ -244,6 +244,7 @@ fn a_scene_without_fog_volumes_and_lamps_runs_nothing_of_theirs_and_keeps_no_byt
     assert_eq!(runs(&dark(&format!("{FOG}{}", row_of_lamps(12, 1.0)))), [true, true, true, true, false]);
     let mut large = dark(FOG);
     (large.camera.width, large.camera.height) = (96, 64);
+    large.camera.vertical_field_of_view_rad = 0.4;
     assert_eq!(runs(&large), [true, true, false, true, true]);
 }
 

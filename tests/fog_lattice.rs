@@ -155,6 +155,21 @@ fn media_before_edges_of_what_stands_there_are_what_marching_each_pixel_finds() 
 }
 
 #[test]
+fn surfaces_at_any_distance_have_media_before_them() {
+    // A hand's breadth away, on a froxel's distance, beyond the last, and where space begins.
+    let distances_m = [0.05, 12.0, 24.0, 900.0, 3e4, 3e8];
+    let scene = bank("altitude_m = 30, elevation_deg = 3", "");
+    let at = |pixel: usize| {
+        if pixel.is_multiple_of(2) { distances_m[pixel % SIZE[0] * distances_m.len() / SIZE[0]] } else { f32::INFINITY }
+    };
+    let depth: Vec<f32> = (0..SIZE[0] * SIZE[1]).map(at).collect();
+    let [marched, between, careless] =
+        rendered(&scene, Some(&Foreground::new(&scene.camera, Depth::Distance, &depth, None).unwrap()));
+    assert!(between.frame.radiance.iter().flatten().all(|radiance| radiance.is_finite()));
+    assert_interpolated([&marched, &between], 0.9, &careless);
+}
+
+#[test]
 fn froxels_are_kept_before_a_hosts_surfaces_alone() {
     let froxels = |rendered: &Rendered| rendered.timings.plan.decision("surface_cells");
     let scene = bank("altitude_m = 2, elevation_deg = 3", "");

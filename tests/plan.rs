@@ -24,7 +24,7 @@ fn plan(scene: &Scene) -> Plan {
 
 /// The passes of air that gives off light of its own, of what stands before the camera, of local media, of pictures large
 /// enough to be interpolated, and of more wavelengths than three.
-const OF_OTHER_SCENES: [&str; 13] = [
+const OF_OTHER_SCENES: [&str; 14] = [
     "emission_order",
     "view_emission",
     "aerial_optical_depth",
@@ -33,6 +33,7 @@ const OF_OTHER_SCENES: [&str; 13] = [
     "local_clusters",
     "terrain",
     "lamp_froxels",
+    "surface_cells",
     "local_media",
     "media_interpolation",
     "sky_lattice",
