@@ -13,7 +13,6 @@
 
 #ifdef MEDIA_LATTICE
 #import welkin::cell_list::{cell_of_entry, CELL_TOTAL, LIST_HEADER, MOST_GROUPS}
-#import welkin::media_lattice::{centre_pixel, corner_pixel, is_node, CELL}
 #endif
 #ifdef CLOUDS
 #import welkin::cloud_source::{phases, PHASE_COUNT}
@@ -23,6 +22,7 @@
 #import welkin::attenuation::share_of_opacity
 #import welkin::media_froxels::{froxel_layer, part_of, slot_m, slots_around, SlotRange, BEAM, DIFFUSE, RADIANCE, TRANSMITTANCE, WHOLE}
 #endif
+#import welkin::media_lattice::{centre_pixel, corner_pixel, is_node, CELL}
 #import welkin::media_march::{
     clear_air, clear_way_of, follow_air, growth_behind, pass_air, place_in_step, ray_of, through_air, Air, Ray, NEVER_M, OPAQUE,
 }

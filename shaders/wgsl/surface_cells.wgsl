@@ -4,9 +4,11 @@
 // Definitions: MEDIA_CELL.
 
 #import welkin::media_lattice::{corner_pixel, CELL}
-#import welkin::media_march::{surface_image, NEVER_M}
 
-// The nearest and the farthest surface, m: NEVER_M and 0 where there is none.
+// What stands before the camera: its distance, m, beside its light; none is at this distance or beyond.
+@group(0) @binding(19) var surface_image: texture_2d<f32>;
+const NO_SURFACE_M: f32 = 1e30;
+// The nearest and the farthest surface, m: NO_SURFACE_M and 0 where there is none.
 @group(1) @binding(56) var surface_cells: texture_storage_2d<rgba32float, write>;
 
 // As bits of floats, whose order is that of numbers.
@@ -20,13 +22,13 @@ fn main(
     @builtin(local_invocation_index) first: u32,
 ) {
     if first == 0u {
-        atomicStore(&nearest, bitcast<u32>(NEVER_M));
+        atomicStore(&nearest, bitcast<u32>(NO_SURFACE_M));
         atomicStore(&farthest, 0u);
     }
     workgroupBarrier();
     let pixel = min(corner_pixel(group.xy) + id.xy, textureDimensions(surface_image) - 1u);
     let distance_m = textureLoad(surface_image, pixel, 0).a;
-    if distance_m < NEVER_M {
+    if distance_m < NO_SURFACE_M {
         atomicMin(&nearest, bitcast<u32>(distance_m));
         atomicMax(&farthest, bitcast<u32>(distance_m));
     }
