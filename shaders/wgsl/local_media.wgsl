@@ -7,7 +7,7 @@
 //
 // Fog and volumes take from the air's light and shade the ground; that they shade thin air is left out.
 //
-// Definitions: CLOUDS; VOLUME_MAX_STEPS; LOCAL_LIGHT_COUNT; LOCAL_VOLUMES (some volume is no fog); MEDIA_LATTICE (only the pixels of the
+// Definitions: CLOUDS; VOLUME_MAX_STEPS; MEDIA_LATTICE (only the pixels of the
 // lattice, or of listed cells: welkin::media_lattice); MEDIA_FROXELS (what is found up to several distances is kept for the former, and
 // they go on behind what stands before the camera: welkin::media_froxels).
 
@@ -19,7 +19,6 @@
 #endif
 #import welkin::media_between::{between, next_boundary_m, Between}
 #ifdef MEDIA_FROXELS
-#import welkin::attenuation::share_of_opacity
 #import welkin::media_froxels::{froxel_layer, part_of, slot_m, slots_around, SlotRange, BEAM, DIFFUSE, RADIANCE, TRANSMITTANCE, WHOLE}
 #endif
 #import welkin::media_lattice::{centre_pixel, corner_pixel, is_node, CELL}

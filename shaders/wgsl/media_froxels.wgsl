@@ -1,7 +1,6 @@
 #define_import_path welkin::media_froxels
 // What media send and leave up to several distances before the camera: froxels of the frustum, at the corners and in the middles of the cells
-// that marched media are interpolated over. So the edge of a hill, or whatever else stands before the camera, needs no march of
-// its own.
+// that marched media are interpolated over. So edges of what stands before the camera need no march of their own.
 //
 // Legend
 //   slot      a distance, or the whole way behind all that stands there; as what an image of the pixels holds

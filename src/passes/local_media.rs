@@ -1,5 +1,5 @@
 //! The march through the sum of all media where a scene has fog, local volumes or local lights: of every pixel, or of those between which
-//! `media_interpolation` fills the others.
+//! `media_interpolation` fills the others, and then also up to several distances before what a host has drawn.
 
 use super::{Pass, Recording, RenderError, media_interpolation, volume_light};
 use crate::gpu::{GpuImage, ImageFormat, ImageShape, Work};
