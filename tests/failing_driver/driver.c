@@ -15,6 +15,8 @@ static void *driver;
 static GetFunction real_get_device_function;
 static Call real_call;
 static long calls_left;
+static void *device_in_use;
+static const int32_t DEVICE_LOST = -4;
 
 static Function of_driver(const char *name) {
     if (!driver && !(driver = dlopen(getenv("WELKIN_TEST_DRIVER"), RTLD_NOW | RTLD_LOCAL))) {
@@ -30,13 +32,19 @@ static int32_t failing(uintptr_t a, uintptr_t b, uintptr_t c, uintptr_t d, uintp
     if (calls_left-- > 0) {
         return real_call(a, b, c, d, e, f);
     }
-    return (int32_t)atoi(getenv("WELKIN_TEST_RESULT"));
+    int32_t result = (int32_t)atoi(getenv("WELKIN_TEST_RESULT"));
+    /* A lost device works no more: nothing that is destroyed after this is in use. */
+    if (result == DEVICE_LOST) {
+        ((int32_t(*)(void *))real_get_device_function(device_in_use, "vkDeviceWaitIdle"))(device_in_use);
+    }
+    return result;
 }
 
 static Function get_device_function(void *device, const char *name) {
     Function found = real_get_device_function(device, name);
     if (found && strcmp(name, getenv("WELKIN_TEST_CALL")) == 0) {
         real_call = (Call)found;
+        device_in_use = device;
         calls_left = atol(getenv("WELKIN_TEST_AFTER"));
         return (Function)failing;
     }
