@@ -161,6 +161,7 @@ fn clear_sky(settings: Settings) -> Result<(), Box<dyn Error>> {
         "local_",
         "media_",
         "ordinates",
+        "surface_cells",
         "terrain",
         "view_emission",
         "volume",

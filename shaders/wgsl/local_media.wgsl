@@ -7,9 +7,9 @@
 //
 // Fog and volumes take from the air's light and shade the ground; that they shade thin air is left out.
 //
-// Definitions: CLOUDS; VOLUME_MAX_STEPS; MEDIA_LATTICE (only the pixels of the
-// lattice, or of listed cells: welkin::media_lattice); MEDIA_FROXELS (what is found up to several distances is kept for the former, and
-// they go on behind what stands before the camera: welkin::media_froxels).
+// Definitions: CLOUDS; VOLUME_MAX_STEPS; MEDIA_LATTICE (only the pixels of the lattice, or of listed cells: welkin::media_lattice);
+// MEDIA_FROXELS (what is found up to several distances is kept for the former, and they go on behind what stands before the camera:
+// welkin::media_froxels).
 
 #ifdef MEDIA_LATTICE
 #import welkin::cell_list::{cell_of_entry, CELL_TOTAL, LIST_HEADER, MOST_GROUPS}
@@ -127,9 +127,7 @@ fn keep(pixel: vec2<u32>, slot: u32, all: Found) {
     textureStore(media_froxels, vec3<u32>(cell, froxel_layer(slot, part, BEAM)), all.beam);
     textureStore(media_froxels, vec3<u32>(cell, froxel_layer(slot, part, DIFFUSE)), all.diffuse);
 }
-#endif
 
-#ifdef MEDIA_FROXELS
 // A cell's parabolas ask the pixels of the lattice around it: up to so many cells before it and behind it, and one more at the
 // picture's edges.
 const ASKED_FROM_BEFORE: u32 = 2u;

@@ -108,6 +108,7 @@ fn clear_way_of(pixel: vec2<u32>) -> Ray {
     return ray;
 }
 
+// The same up to what stands there.
 fn ray_of(pixel: vec2<u32>) -> Ray {
     var ray = clear_way_of(pixel);
 #ifdef SURFACE

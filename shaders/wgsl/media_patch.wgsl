@@ -51,22 +51,21 @@ fn load_pixel(image: u32, pixel: vec2<u32>) -> vec4<f32> {
     }
 }
 
-fn at_corner(layer: Layer, cell: vec2<u32>) -> vec4<f32> {
+fn at_part(layer: Layer, cell: vec2<u32>, part: u32) -> vec4<f32> {
 #ifdef MEDIA_FROXELS
     if layer.slot != OWN {
-        return textureLoad(media_froxels, vec3<u32>(cell, froxel_layer(layer.slot, CORNER, layer.image)), 0);
+        return textureLoad(media_froxels, vec3<u32>(cell, froxel_layer(layer.slot, part, layer.image)), 0);
     }
 #endif
-    return load_pixel(layer.image, corner_pixel(cell));
+    return load_pixel(layer.image, select(corner_pixel(cell), centre_pixel(cell), part == MIDDLE));
+}
+
+fn at_corner(layer: Layer, cell: vec2<u32>) -> vec4<f32> {
+    return at_part(layer, cell, CORNER);
 }
 
 fn at_middle(layer: Layer, cell: vec2<u32>) -> vec4<f32> {
-#ifdef MEDIA_FROXELS
-    if layer.slot != OWN {
-        return textureLoad(media_froxels, vec3<u32>(cell, froxel_layer(layer.slot, MIDDLE, layer.image)), 0);
-    }
-#endif
-    return load_pixel(layer.image, centre_pixel(cell));
+    return at_part(layer, cell, MIDDLE);
 }
 
 // Errors of an image's channels count relative to these, where the channels are not larger.
