@@ -21,7 +21,7 @@ use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Sequence, 
 use crate::probe::{Orders, Ray, RayRadiance};
 use crate::scene::{Camera, Light, Scene};
 
-pub use crate::passes::{DepthBuffer, HostDepth, HostFrame, HostLeft};
+pub use crate::passes::{DepthBuffer, HostDepth, HostFrame, HostFroxels, HostLeft};
 pub use embedded::HostedFrame;
 pub use prices::{Price, prices};
 use sequence::Before;

@@ -5,6 +5,11 @@ mod common;
 mod engine;
 #[path = "../examples/vulkan_host/frames.rs"]
 mod frames;
+#[path = "../examples/vulkan_host/glass.rs"]
+#[allow(dead_code)]
+mod glass;
+#[path = "../examples/vulkan_host/images.rs"]
+mod images;
 
 use std::time::Duration;
 
@@ -248,7 +253,7 @@ fn an_engine_gets_in_its_own_images_what_is_rendered_headless() {
         let engine = Engine::new(SIZE, format, true).unwrap();
         // Three frames, two of them in flight; one where only the format is another.
         let scenes = if units_per_radiance == 1.0 { &scenes[..] } else { &scenes[..1] };
-        let pictures = frames::render(&engine, scenes, settings(), f64::from(units_per_radiance)).unwrap();
+        let pictures = frames::render(&engine, None, scenes, settings(), f64::from(units_per_radiance)).unwrap();
         let mut headless = |scene: &Scene| headless(&mut without, scene, &engine, units_per_radiance);
         let expected: Vec<_> = scenes.iter().map(&mut headless).collect();
         for (index, (picture, expected)) in pictures.iter().zip(&expected).enumerate() {

@@ -9,6 +9,8 @@ use ash::vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2
 use ash::{ext, vk};
 use welkin::gpu::{HostFeatures, HostUse};
 
+use super::images::{Copied, Image, image, whole};
+
 /// Distance of the engine's near plane, m; its depth is reversed and has no far plane.
 pub const NEAR_M: f64 = 0.1;
 
@@ -28,21 +30,12 @@ pub const WALLS: [Wall; 2] = [
     Wall { place: [0.6, 0.25, 0.75, 1.0], planar_m: 800.0, colour: [0.10, 0.06, 0.04] },
 ];
 
-/// An image of the engine's.
-pub struct Image {
-    pub raw: vk::Image,
-    pub format: vk::Format,
-    memory: vk::DeviceMemory,
-    view: vk::ImageView,
-}
-
 /// What one frame in flight has of its own.
 pub struct Slot {
     pub commands: vk::CommandBuffer,
     pub done: vk::Fence,
     /// What the frame's picture is copied to.
-    copy: vk::Buffer,
-    memory: vk::DeviceMemory,
+    copy: Copied,
 }
 
 /// The messages of the validation layer.
@@ -101,11 +94,12 @@ impl Engine {
         let pool = unsafe { device.create_command_pool(&pool, None) }?;
         use vk::ImageUsageFlags as Usage;
         let usage = Usage::COLOR_ATTACHMENT | Usage::SAMPLED | Usage::STORAGE | Usage::TRANSFER_SRC;
-        let colour = image(&device, &memory, size, colour_format, usage)?;
+        let extent = [size[0], size[1], 1];
+        let colour = image(&device, &memory, extent, colour_format, usage)?;
         let usage = Usage::DEPTH_STENCIL_ATTACHMENT | Usage::SAMPLED;
-        let depth = image(&device, &memory, size, vk::Format::D32_SFLOAT, usage)?;
-        let bytes = u64::from(size[0] * size[1]) * texel_bytes(colour_format);
-        let slots = [slot(&device, &memory, pool, bytes)?, slot(&device, &memory, pool, bytes)?];
+        let depth = image(&device, &memory, extent, vk::Format::D32_SFLOAT, usage)?;
+        let new_slot = || slot(&device, pool, Copied::new(&device, &memory, colour_format, extent)?);
+        let slots = [new_slot()?, new_slot()?];
         Ok(Self {
             instance,
             physical_device,
@@ -208,25 +202,10 @@ impl Engine {
 
     /// Copies the picture, which is in `TRANSFER_SRC_OPTIMAL`, to what the engine reads, and submits the frame.
     pub fn submit(&self, slot: &Slot) -> anyhow::Result<()> {
-        let [width, height] = self.size;
-        let layers = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);
-        let region = vk::BufferImageCopy::default().image_subresource(layers).image_extent(vk::Extent3D {
-            width,
-            height,
-            depth: 1,
-        });
-        let to_host = [vk::MemoryBarrier2::default()
-            .src_stage_mask(Stage::COPY)
-            .src_access_mask(Access::TRANSFER_WRITE)
-            .dst_stage_mask(Stage::HOST)
-            .dst_access_mask(Access::HOST_READ)];
-        let dependency = vk::DependencyInfo::default().memory_barriers(&to_host);
+        slot.copy.record(&self.device, slot.commands, &self.colour);
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(slot.commands)];
         let submission = vk::SubmitInfo2::default().command_buffer_infos(&commands);
         unsafe {
-            let (picture, layout) = (self.colour.raw, COPIED_COLOUR.layout);
-            self.device.cmd_copy_image_to_buffer(slot.commands, picture, layout, slot.copy, &[region]);
-            self.device.cmd_pipeline_barrier2(slot.commands, &dependency);
             self.device.end_command_buffer(slot.commands)?;
             self.device.reset_fences(&[slot.done])?;
             self.device.queue_submit2(self.queue, &[submission], slot.done)?;
@@ -236,21 +215,8 @@ impl Engine {
 
     /// The picture of a slot's last frame, when the device has done it: rows from the top.
     pub fn picture(&self, slot: &Slot) -> anyhow::Result<Vec<[f32; 4]>> {
-        let texels = (self.size[0] * self.size[1]) as usize;
-        let bytes = texels as u64 * texel_bytes(self.colour.format);
-        unsafe {
-            self.device.wait_for_fences(&[slot.done], true, u64::MAX)?;
-            let mapped = self.device.map_memory(slot.memory, 0, bytes, Default::default())?;
-            let picture = match self.colour.format {
-                vk::Format::R16G16B16A16_SFLOAT => {
-                    let halves = std::slice::from_raw_parts(mapped.cast::<[half::f16; 4]>(), texels);
-                    halves.iter().map(|texel| texel.map(half::f16::to_f32)).collect()
-                }
-                _ => std::slice::from_raw_parts(mapped.cast::<[f32; 4]>(), texels).to_vec(),
-            };
-            self.device.unmap_memory(slot.memory);
-            Ok(picture)
-        }
+        unsafe { self.device.wait_for_fences(&[slot.done], true, u64::MAX) }?;
+        slot.copy.read(&self.device)
     }
 
     /// Waits until the device is idle.
@@ -265,14 +231,10 @@ impl Engine {
             let _ = device.device_wait_idle();
             for slot in &self.slots {
                 device.destroy_fence(slot.done, None);
-                device.destroy_buffer(slot.copy, None);
-                device.free_memory(slot.memory, None);
+                slot.copy.destroy(device);
             }
-            for image in [&self.colour, &self.depth] {
-                device.destroy_image_view(image.view, None);
-                device.destroy_image(image.raw, None);
-                device.free_memory(image.memory, None);
-            }
+            self.colour.destroy(device);
+            self.depth.destroy(device);
             device.destroy_command_pool(self.pool, None);
             device.destroy_device(None);
             if let Some((functions, messenger)) = self.messenger.take() {
@@ -299,14 +261,6 @@ pub const DRAWN_DEPTH: HostUse = HostUse {
 };
 pub const COPIED_COLOUR: HostUse =
     HostUse { stage: Stage::COPY, access: Access::TRANSFER_READ, layout: Layout::TRANSFER_SRC_OPTIMAL };
-
-fn texel_bytes(format: vk::Format) -> u64 {
-    if format == vk::Format::R16G16B16A16_SFLOAT { 8 } else { 16 }
-}
-
-fn whole(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
-    vk::ImageSubresourceRange::default().aspect_mask(aspect).level_count(1).layer_count(1)
-}
 
 fn create_instance(entry: &ash::Entry, validate: bool, messages: &Messages) -> anyhow::Result<ash::Instance> {
     let application = vk::ApplicationInfo::default().application_name(c"an engine").api_version(vk::API_VERSION_1_3);
@@ -358,69 +312,12 @@ fn choose(instance: &ash::Instance) -> anyhow::Result<(vk::PhysicalDevice, u32)>
     Err(anyhow!("no Vulkan device that draws and computes"))
 }
 
-fn allocate(
-    device: &ash::Device,
-    memory: &vk::PhysicalDeviceMemoryProperties,
-    needs: vk::MemoryRequirements,
-    wanted: vk::MemoryPropertyFlags,
-) -> anyhow::Result<vk::DeviceMemory> {
-    let fits = |index: &u32| {
-        needs.memory_type_bits & (1 << index) != 0
-            && memory.memory_types[*index as usize].property_flags.contains(wanted)
-    };
-    let index = (0..memory.memory_type_count).find(fits).context("no such memory")?;
-    let info = vk::MemoryAllocateInfo::default().allocation_size(needs.size).memory_type_index(index);
-    Ok(unsafe { device.allocate_memory(&info, None) }?)
-}
-
-fn image(
-    device: &ash::Device,
-    memory: &vk::PhysicalDeviceMemoryProperties,
-    [width, height]: [u32; 2],
-    format: vk::Format,
-    usage: vk::ImageUsageFlags,
-) -> anyhow::Result<Image> {
-    let info = vk::ImageCreateInfo::default()
-        .image_type(vk::ImageType::TYPE_2D)
-        .format(format)
-        .extent(vk::Extent3D { width, height, depth: 1 })
-        .mip_levels(1)
-        .array_layers(1)
-        .samples(vk::SampleCountFlags::TYPE_1)
-        .usage(usage);
-    let is_depth = usage.contains(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT);
-    let aspect = if is_depth { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR };
-    unsafe {
-        let raw = device.create_image(&info, None)?;
-        let needs = device.get_image_memory_requirements(raw);
-        let memory = allocate(device, memory, needs, vk::MemoryPropertyFlags::DEVICE_LOCAL)?;
-        device.bind_image_memory(raw, memory, 0)?;
-        let view = vk::ImageViewCreateInfo::default()
-            .image(raw)
-            .view_type(vk::ImageViewType::TYPE_2D)
-            .format(format)
-            .subresource_range(whole(aspect));
-        Ok(Image { raw, format, memory, view: device.create_image_view(&view, None)? })
-    }
-}
-
-fn slot(
-    device: &ash::Device,
-    memory: &vk::PhysicalDeviceMemoryProperties,
-    pool: vk::CommandPool,
-    bytes: u64,
-) -> anyhow::Result<Slot> {
+fn slot(device: &ash::Device, pool: vk::CommandPool, copy: Copied) -> anyhow::Result<Slot> {
     let buffers = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
     let signalled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
-    let copy = vk::BufferCreateInfo::default().size(bytes).usage(vk::BufferUsageFlags::TRANSFER_DST);
     unsafe {
         let commands = device.allocate_command_buffers(&buffers)?[0];
         let done = device.create_fence(&signalled, None)?;
-        let copy = device.create_buffer(&copy, None)?;
-        let needs = device.get_buffer_memory_requirements(copy);
-        let seen = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
-        let memory = allocate(device, memory, needs, seen)?;
-        device.bind_buffer_memory(copy, memory, 0)?;
-        Ok(Slot { commands, done, copy, memory })
+        Ok(Slot { commands, done, copy })
     }
 }

@@ -3,10 +3,11 @@
 use ash::vk;
 use welkin::gpu::{Gpu, HostCommands, HostDevice, HostImage, HostRecorded, HostUse};
 use welkin::plan::Settings;
-use welkin::renderer::{DepthBuffer, HostDepth, HostFrame, Renderer};
+use welkin::renderer::{DepthBuffer, HostDepth, HostFrame, HostedFrame, Renderer};
 use welkin::scene::Scene;
 
 use super::engine::{COPIED_COLOUR, DRAWN_COLOUR, DRAWN_DEPTH, Engine, NEAR_M, Slot};
+use super::glass::Froxels;
 
 /// Opens welkin on the engine's device.
 pub fn open(engine: &Engine) -> anyhow::Result<Gpu> {
@@ -41,11 +42,32 @@ pub fn frame(engine: &Engine, gpu: &Gpu, units_per_radiance: f64) -> anyhow::Res
             image: HostImage { image: depth, before: DRAWN_DEPTH, after: None },
             buffer: DepthBuffer::Perspective { near_m: NEAR_M, far_m: f64::INFINITY, reversed: true },
         }),
+        froxels: None,
         units_per_radiance,
     })
 }
 
 /// Records a frame: the engine's walls, then the sky. `left` is how the frame before has left colour and depth.
+pub fn hosted(
+    engine: &Engine,
+    slot: &Slot,
+    renderer: &mut Renderer,
+    scene: &Scene,
+    settings: Settings,
+    frame: &HostFrame,
+    left: &mut [HostUse; 2],
+) -> anyhow::Result<HostedFrame> {
+    engine.begin(slot)?;
+    engine.draw_walls(slot, *left);
+    // SAFETY: the command buffer is being recorded outside of a rendering; frames are submitted in order, to one queue, or
+    // given up; what is returned is dropped after the slot's fence.
+    let commands = unsafe { HostCommands::new(slot.commands) };
+    let hosted = renderer.record_frame(commands, scene, settings, frame)?;
+    *left = [hosted.left.colour, hosted.left.depth.unwrap_or_default()];
+    Ok(hosted)
+}
+
+/// The same, of which only what the device uses is kept.
 pub fn record(
     engine: &Engine,
     slot: &Slot,
@@ -55,25 +77,20 @@ pub fn record(
     frame: &HostFrame,
     left: &mut [HostUse; 2],
 ) -> anyhow::Result<HostRecorded> {
-    engine.begin(slot)?;
-    engine.draw_walls(slot, *left);
-    // SAFETY: the command buffer is being recorded outside of a rendering; frames are submitted in order, to one queue, or
-    // given up; what is returned is dropped after the slot's fence.
-    let commands = unsafe { HostCommands::new(slot.commands) };
-    let hosted = renderer.record_frame(commands, scene, settings, frame)?;
-    *left = [hosted.left.colour, hosted.left.depth.unwrap_or_default()];
-    Ok(hosted.recorded)
+    Ok(hosted(engine, slot, renderer, scene, settings, frame, left)?.recorded)
 }
 
-/// Renders a frame for each scene, two of them in flight, and returns the pictures.
+/// Renders a frame for each scene, two of them in flight, and returns the pictures. Froxels hold what the last of them has found.
 pub fn render(
     engine: &Engine,
+    froxels: Option<&Froxels>,
     scenes: &[Scene],
     settings: Settings,
     units_per_radiance: f64,
 ) -> anyhow::Result<Vec<Vec<[f32; 4]>>> {
     let gpu = open(engine)?;
-    let frame = frame(engine, &gpu, units_per_radiance)?;
+    let images = froxels.map(|froxels| froxels.for_welkin(&gpu)).transpose()?;
+    let frame = HostFrame { froxels: images, ..frame(engine, &gpu, units_per_radiance)? };
     let mut renderer = Renderer::on(gpu)?;
     let mut left = [HostUse::default(); 2];
     let mut in_flight: [Option<HostRecorded>; 2] = [None, None];
@@ -86,6 +103,9 @@ pub fn render(
             in_flight[index % 2] = None;
         }
         in_flight[index % 2] = Some(record(engine, slot, &mut renderer, scene, settings, &frame, &mut left)?);
+        if let Some(froxels) = froxels {
+            froxels.copy(engine, slot);
+        }
         engine.submit(slot)?;
     }
     // The renderer may go before its frames are done; what they need lives on in them.

@@ -84,11 +84,11 @@ fn cut_at_layer(ray: ptr<function, Ray>, layer: u32, bottom_m: f32, top_m: f32) 
     (*ray).crossings_m[4u * layer + 3u] = top.y;
 }
 
-// A pixel's ray without what stands before the camera.
-fn clear_way_of(pixel: vec2<u32>) -> Ray {
+// The ray in a direction that lies in a pixel, without what stands before the camera.
+fn clear_way_along(direction: vec3<f32>, pixel: vec2<u32>) -> Ray {
     var ray: Ray;
     ray.pixel = pixel;
-    ray.direction = view_direction(pixel);
+    ray.direction = direction;
     ray.end_m = NEVER_M;
     if ray.direction.z < geometry::horizon_mu(atmosphere.radius_m, observer.altitude_m) {
         ray.end_m = geometry::distance_to_shell_from_above(atmosphere.radius_m, observer.altitude_m, ray.direction.z, 0.0);
@@ -106,6 +106,11 @@ fn clear_way_of(pixel: vec2<u32>) -> Ray {
     }
 #endif
     return ray;
+}
+
+// That of a pixel.
+fn clear_way_of(pixel: vec2<u32>) -> Ray {
+    return clear_way_along(view_direction(pixel), pixel);
 }
 
 // The same up to what stands there.

@@ -96,11 +96,13 @@ fn add_volume(sum: ptr<function, Sum>, stretch: Stretch, piece: Piece, pixel: ve
 
 // Adds what fog and volumes send and hide in a step, and the depth of what is similar to all media in it.
 fn add_volumes(sum: ptr<function, Sum>, stretch: Stretch, step: Step, pixel: vec2<u32>, cluster: u32, air_leaves: vec3<f32>) {
+#if FOG_COUNT > 0
     for (var bank = 0u; bank < FOG_COUNT; bank++) {
         if step.fog[bank] > 0.0 {
             add_volume(sum, stretch, Piece(bank, step.fog[bank], step.place), pixel, cluster, air_leaves);
         }
     }
+#endif
 #ifdef LOCAL_VOLUMES
     var locals = volumes_of(cluster);
     for (var index = next_member(&locals); index != NONE; index = next_member(&locals)) {

@@ -9,7 +9,7 @@
 #import welkin::camera::{camera, view_direction}
 #import welkin::march::view_ray
 #import welkin::observer::observer
-#import welkin::sky::{Shares, ALL}
+#import welkin::sky::{shares_before, Shares, ALL}
 #import welkin::smooth_sky::{SmoothSky, SINGLE_COUNT}
 
 #ifdef FOR_SCREEN
@@ -59,22 +59,16 @@ fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
 #ifdef LOCAL_MEDIA
     let media = textureLoad(media_radiance_image, pixel, 0);
     let through = textureLoad(media_transmittance_image, pixel, 0);
-    let left = through.rgb * behind;
-    let opacity = max(1.0 - behind, vec3<f32>(1e-6));
-    let shares = Shares(
-        max((textureLoad(media_beam_image, pixel, 0).rgb - left) / opacity, vec3<f32>(0.0)),
-        max((textureLoad(media_diffuse_image, pixel, 0).rgb - left) / opacity, vec3<f32>(0.0))
-    );
+    let beam = textureLoad(media_beam_image, pixel, 0).rgb;
+    let diffuse = textureLoad(media_diffuse_image, pixel, 0).rgb;
+    let shares = shares_before(beam, diffuse, through.rgb, behind);
     return Overlay(media.rgb, through.rgb, shares, Shares(vec3<f32>(media.a), vec3<f32>(through.a)));
 #else
 #ifdef CLOUDS
     let clouds = textureLoad(cloud_radiance_image, pixel, 0);
     let beam = textureLoad(cloud_air_image, pixel, 0);
     let diffuse = textureLoad(cloud_diffuse_image, pixel, 0);
-    let whole = max(1.0 - behind, vec3<f32>(1e-6));
-    let air = Shares(
-        max((beam.rgb - clouds.a * behind) / whole, vec3<f32>(0.0)), max((diffuse.rgb - clouds.a * behind) / whole, vec3<f32>(0.0))
-    );
+    let air = shares_before(beam.rgb, diffuse.rgb, vec3<f32>(clouds.a), behind);
     return Overlay(clouds.rgb, vec3<f32>(clouds.a), air, Shares(vec3<f32>(beam.a), vec3<f32>(diffuse.a)));
 #else
     return Overlay(vec3<f32>(0.0), vec3<f32>(1.0), ALL, ALL);

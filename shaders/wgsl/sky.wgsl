@@ -152,6 +152,14 @@ struct Shares {
 
 const ALL: Shares = Shares(vec3<f32>(1.0), vec3<f32>(1.0));
 
+// The same of the light of the air up to a place, from int T S dT_air + T T_air to there, T of what stands in the air and S what it leaves
+// of the beam or of diffuse light at each point.
+fn shares_before(beam: vec3<f32>, diffuse: vec3<f32>, transmittance: vec3<f32>, air_transmittance: vec3<f32>) -> Shares {
+    let behind = transmittance * air_transmittance;
+    let opacity = max(1.0 - air_transmittance, vec3<f32>(1e-6));
+    return Shares(max((beam - behind) / opacity, vec3<f32>(0.0)), max((diffuse - behind) / opacity, vec3<f32>(0.0)));
+}
+
 // Light that the air along the ray has scattered once, by one scatterer, without its phase function: over unit irradiance
 // of the light.
 fn single_scattering(light: u32, scatterer: u32, direction: SkyDirection) -> vec3<f32> {

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use ash::vk;
+use welkin_shaders::Dimension;
 
 use super::Gpu;
 use super::barrier::Use;
@@ -209,6 +210,37 @@ impl Gpu {
         format: vk::Format,
         [width, height]: [u32; 2],
     ) -> Result<GpuImage, GpuError> {
+        // SAFETY: as the caller promises.
+        unsafe { self.image_of_host(name, image, format, ImageShape::D2(width, height)) }
+    }
+
+    /// Takes in a three-dimensional image of a host's, as [`Gpu::host_image`].
+    ///
+    /// # Errors
+    /// As [`Gpu::host_image`].
+    ///
+    /// # Safety
+    /// As [`Gpu::host_image`], but for three dimensions.
+    pub unsafe fn host_volume(
+        &self,
+        name: &str,
+        image: vk::Image,
+        format: vk::Format,
+        [width, height, depth]: [u32; 3],
+    ) -> Result<GpuImage, GpuError> {
+        // SAFETY: as the caller promises.
+        unsafe { self.image_of_host(name, image, format, ImageShape::D3(width, height, depth)) }
+    }
+
+    /// # Safety
+    /// As [`Gpu::host_image`], of this shape.
+    unsafe fn image_of_host(
+        &self,
+        name: &str,
+        image: vk::Image,
+        format: vk::Format,
+        shape: ImageShape,
+    ) -> Result<GpuImage, GpuError> {
         let refuse = |reason: String| GpuError::HostImage { name: name.to_owned(), reason };
         let known = ImageFormat::of(format).ok_or_else(|| {
             refuse(format!(
@@ -216,11 +248,12 @@ impl Gpu {
                  R8G8B8A8_UNORM, R32_SFLOAT, D32_SFLOAT, D16_UNORM, D24_UNORM_S8_UINT and D32_SFLOAT_S8_UINT"
             ))
         })?;
-        let Limits { image_side: [_, side, _], .. } = self.info().limits;
-        if [width, height].iter().any(|&texels| texels == 0 || texels > side) {
-            return Err(refuse(format!("{width} x {height} texels; each side must be in 1..={side}")));
+        let Limits { image_side: [_, flat, deep], .. } = self.info().limits;
+        let side = if shape.dimension() == Dimension::D3 { deep } else { flat };
+        if shape.extent().iter().any(|&texels| texels == 0 || texels > side) {
+            let [width, height, depth] = shape.extent();
+            return Err(refuse(format!("{width} x {height} x {depth} texels; each side must be in 1..={side}")));
         }
-        let shape = ImageShape::D2(width, height);
         // SAFETY: as the caller promises.
         unsafe { ImageInner::of_host(&self.0, name, image, shape, known) }.map(|inner| GpuImage(Arc::new(inner)))
     }

@@ -33,9 +33,12 @@ fn need(facts: &Facts) -> Need {
     before_surfaces(sky_view::need(facts), facts)
 }
 
-/// The need of what only surfaces call for, where the sky behind them has one.
+/// The need of what only surfaces and a host's froxels call for, where the sky behind them has one.
 pub(super) fn before_surfaces(sky: Need, facts: &Facts) -> Need {
     match (sky, facts.surface) {
+        (Need::Needed(_), None) if facts.froxels.is_some() => {
+            Need::Needed("the host asks for the air before what light passes through".to_owned())
+        }
         (Need::Needed(_), None) => Need::NotNeeded(match &facts.out_of_view.terrain {
             Some(reason) => reason.clone(),
             None => "nothing stands between the camera and the ground".to_owned(),

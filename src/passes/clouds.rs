@@ -1,6 +1,6 @@
 //! Clouds along every pixel's ray, from any altitude.
 
-use super::{Pass, Recording, RenderError};
+use super::{Pass, Recording, RenderError, joined};
 use crate::gpu::{ImageFormat, ImageShape, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
@@ -11,19 +11,7 @@ pub const PASS: Pass = Pass {
     declaration: Declaration {
         name: NAME,
         need: need_alone,
-        reads: &[
-            "cloud_shape_volume",
-            "cloud_erosion_volume",
-            "cloud_weather_map",
-            "cloud_curl_map",
-            "cloud_gaps",
-            "cloud_light_image",
-            "cloud_cover_image",
-            "ordinates_sunlight",
-            "optical_depth_table",
-            "multiple_scattering_table",
-            "terrain_image",
-        ],
+        reads: &READS,
         writes: &["cloud_radiance_image", "cloud_air_image", "cloud_diffuse_image", "cloud_distance_image"],
         inputs: |facts| {
             let scene = facts.scene;
@@ -47,6 +35,23 @@ pub const PASS: Pass = Pass {
     },
     record,
 };
+
+/// What a march through clouds reads.
+pub(super) const MARCH_READS: [&str; 10] = [
+    "cloud_shape_volume",
+    "cloud_erosion_volume",
+    "cloud_weather_map",
+    "cloud_curl_map",
+    "cloud_gaps",
+    "cloud_light_image",
+    "cloud_cover_image",
+    "ordinates_sunlight",
+    "optical_depth_table",
+    "multiple_scattering_table",
+];
+
+/// The same up to hills.
+const READS: [&str; 11] = joined(MARCH_READS, ["terrain_image"]);
 
 /// What is marched into: by the names of whole pictures, and of those of which a frame marches some pixels.
 const IMAGES: [[&str; 2]; 3] = [

@@ -5,7 +5,11 @@ use glam::DMat3;
 use super::{RenderError, Resources};
 use crate::foreground::ForegroundError;
 use crate::gpu::{HostCommands, HostImage, HostRecorded, HostUse, ImageFormat, ImageShape};
+use crate::plan::FroxelGrid;
 use crate::scene::{Camera, Scene};
+
+/// Formats of a host's images that hold light.
+const FLOATS: [ImageFormat; 2] = [ImageFormat::Rgba16Float, ImageFormat::Rgba32Float];
 
 /// What the numbers of a host's depth image are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +38,54 @@ pub struct HostDepth {
     pub buffer: DepthBuffer,
 }
 
+/// Images of a host's that are to hold what lies before the camera up to many distances, so that what light passes through (smoke, glass,
+/// water) can be drawn after the frame: `colour * transmittance + radiance` at its place.
+///
+/// Both are three-dimensional and of one size, which is the host's choice: columns and rows over the whole picture, and slices of
+/// [`FroxelGrid`]; `R16G16B16A16_SFLOAT` or `R32G32B32A32_SFLOAT`. Linear filters between texels do.
+#[derive(Clone)]
+pub struct HostFroxels {
+    /// Light that air, clouds, fog and volumes send from before a froxel, in the unit and the channels of the picture. The fourth
+    /// component is the mean of the transmittances.
+    pub radiance: HostImage,
+    /// What they let through, of each channel of the scene's three; the fourth component as above.
+    pub transmittance: HostImage,
+    /// [`FroxelGrid::near_m`].
+    pub near_m: f64,
+    /// [`FroxelGrid::far_m`].
+    pub far_m: f64,
+}
+
+impl HostFroxels {
+    /// Where the froxels lie.
+    pub fn grid(&self) -> FroxelGrid {
+        FroxelGrid { size: self.radiance.image.shape().extent(), near_m: self.near_m, far_m: self.far_m }
+    }
+
+    fn check(&self) -> Result<(), RenderError> {
+        let images = [
+            ("the host's froxels' radiance", &self.radiance),
+            ("the host's froxels' transmittance", &self.transmittance),
+        ];
+        for (what, image) in images {
+            let (shape, format) = (image.image.shape(), image.image.format());
+            let is_volume = matches!(shape, ImageShape::D3(_, _, slices) if slices >= 2);
+            let fits = is_volume && FLOATS.contains(&format);
+            if !fits || (shape, format) != (self.radiance.image.shape(), self.radiance.image.format()) {
+                let expected = format!("D3 of two slices or more, both alike, of one of {FLOATS:?}");
+                return Err(RenderError::Target { what, found: format!("{shape:?} of {format:?}"), expected });
+            }
+        }
+        let distances = [self.near_m, self.far_m];
+        if !distances.iter().all(|&distance_m| distance_m > 0.0 && distance_m.is_finite()) {
+            let found = format!("grid from {} to {} m", self.near_m, self.far_m);
+            let expected = "grid between finite distances above 0".to_owned();
+            return Err(RenderError::Target { what: "the host's froxels", found, expected });
+        }
+        Ok(())
+    }
+}
+
 /// The images of one frame of a host's.
 #[derive(Clone)]
 pub struct HostFrame {
@@ -42,6 +94,8 @@ pub struct HostFrame {
     pub colour: HostImage,
     /// The surfaces that the host has drawn; without it there are none, and the picture is sky and ground alone.
     pub depth: Option<HostDepth>,
+    /// What lies before the camera, for what the host draws afterwards.
+    pub froxels: Option<HostFroxels>,
     /// The host's number for a radiance of 1 W·m⁻²·sr⁻¹·nm⁻¹: its exposure.
     pub units_per_radiance: f64,
 }
@@ -53,6 +107,8 @@ pub struct HostLeft {
     pub colour: HostUse,
     /// The depth image.
     pub depth: Option<HostUse>,
+    /// Radiance and transmittance of the froxels.
+    pub froxels: Option<[HostUse; 2]>,
 }
 
 /// A frame that is being recorded for a host.
@@ -89,7 +145,8 @@ impl DepthBuffer {
 
 impl HostFrame {
     pub(super) fn images(&self) -> impl Iterator<Item = &HostImage> {
-        self.depth.iter().map(|depth| &depth.image).chain([&self.colour])
+        let froxels = self.froxels.iter().flat_map(|froxels| [&froxels.radiance, &froxels.transmittance]);
+        self.depth.iter().map(|depth| &depth.image).chain([&self.colour]).chain(froxels)
     }
 
     /// From spectral radiance to the host's colour.
@@ -111,7 +168,7 @@ impl HostFrame {
             let expected = format!("{shape:?} of one of {formats:?}");
             Err(RenderError::Target { what, found: format!("{found_shape:?} of {found:?}"), expected })
         };
-        fits("the host's colour", &self.colour, &[ImageFormat::Rgba16Float, ImageFormat::Rgba32Float])?;
+        fits("the host's colour", &self.colour, &FLOATS)?;
         if !(self.units_per_radiance > 0.0 && self.units_per_radiance.is_finite()) {
             let found = format!("unit of {} for each radiance", self.units_per_radiance);
             return Err(RenderError::Target {
@@ -120,6 +177,7 @@ impl HostFrame {
                 expected: "number above 0".to_owned(),
             });
         }
+        self.froxels.as_ref().map_or(Ok(()), HostFroxels::check)?;
         let Some(depth) = &self.depth else { return Ok(()) };
         depth.buffer.check()?;
         use ImageFormat as F;

@@ -1,7 +1,7 @@
 //! The march through the sum of all media where a scene has fog, local volumes or local lights: of every pixel, or of those between which
 //! `media_interpolation` fills the others, and then also up to several distances before what a host has drawn.
 
-use super::{Pass, Recording, RenderError, media_interpolation, volume_light};
+use super::{Pass, Recording, RenderError, clouds, joined, media_interpolation, volume_light};
 use crate::gpu::{GpuImage, ImageFormat, ImageShape, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, media_froxels};
 
@@ -23,25 +23,12 @@ pub const PASS: Pass = Pass {
     record,
 };
 
-/// What a ray is marched through, and meets.
-const READS: [&str; 16] = [
-    "cloud_shape_volume",
-    "cloud_erosion_volume",
-    "cloud_weather_map",
-    "cloud_curl_map",
-    "cloud_gaps",
-    "cloud_light_image",
-    "cloud_cover_image",
-    "ordinates_sunlight",
-    "optical_depth_table",
-    "multiple_scattering_table",
-    "volume_light_image",
-    "volume_sky_image",
-    "cluster_masks",
-    "lamp_froxels",
-    "terrain_image",
-    "surface_cells",
-];
+/// What a ray is marched through.
+pub(super) const MARCH_READS: [&str; 14] =
+    joined(clouds::MARCH_READS, ["volume_light_image", "volume_sky_image", "cluster_masks", "lamp_froxels"]);
+
+/// The same and what it meets.
+const READS: [&str; 16] = joined(MARCH_READS, ["terrain_image", "surface_cells"]);
 
 /// What is known of each pixel.
 const IMAGES: [&str; 4] =
@@ -54,10 +41,15 @@ const FROXELS: &str = "media_froxels";
 pub(super) const WRITES: [&str; 5] = [IMAGES[0], IMAGES[1], IMAGES[2], IMAGES[3], FROXELS];
 
 pub(super) fn inputs(facts: &Facts) -> Fingerprint {
+    Fingerprint::of(&(march_inputs(facts), facts.surface))
+}
+
+/// What a march depends on besides what it reads, whatever stands before the camera.
+pub(super) fn march_inputs(facts: &Facts) -> Fingerprint {
     let scene = facts.scene;
     let settings = (facts.settings.clouds, facts.settings.volumes, facts.settings.multiple_scattering_size);
     let media = (&facts.volumes, &facts.local_lights, &scene.clouds, scene.time_s);
-    Fingerprint::of(&(&scene.camera, &facts.lights, &scene.planet, media, settings, facts.surface))
+    Fingerprint::of(&(&scene.camera, &facts.lights, &scene.planet, media, settings))
 }
 
 fn shape(facts: &Facts) -> ImageShape {

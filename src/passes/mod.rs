@@ -23,10 +23,12 @@ mod emission_order;
 mod first_order;
 mod first_source;
 mod foreground;
+mod froxel_media;
 mod higher_order;
 mod higher_source;
 mod host_colour;
 mod host_frame;
+mod host_froxels;
 mod host_surface;
 mod interpolate;
 mod isotropic_series;
@@ -52,7 +54,7 @@ mod volume_light;
 
 pub use definitions::definitions;
 pub use foreground::upload as upload_foreground;
-pub use host_frame::{DepthBuffer, HostDepth, HostFrame, HostLeft, HostRecording};
+pub use host_frame::{DepthBuffer, HostDepth, HostFrame, HostFroxels, HostLeft, HostRecording};
 pub use probe::{download as download_answers, record as record_probe, upload as upload_rays};
 pub use recording::{Parameters, Recording};
 pub use resources::Resources;
@@ -125,6 +127,9 @@ pub const HOST_SURFACE: Pass = host_surface::PASS;
 /// Into the host's picture, after them.
 pub const HOST_COLOUR: Pass = host_colour::PASS;
 
+/// Into the host's froxels, in order.
+pub const HOST_FROXELS: [Pass; 2] = [froxel_media::PASS, host_froxels::PASS];
+
 /// Images of a frame, which are filled anew for every group of wavelengths or gather all of them.
 pub const SHARED_IMAGES: [&str; 8] = [
     "terrain_image",
@@ -136,6 +141,20 @@ pub const SHARED_IMAGES: [&str; 8] = [
     "colour_transmittance_image",
     "picture_image",
 ];
+
+/// Two lists of names as one, of as many as both.
+const fn joined<const A: usize, const B: usize, const BOTH: usize>(
+    first: [&'static str; A],
+    second: [&'static str; B],
+) -> [&'static str; BOTH] {
+    let mut names = [""; BOTH];
+    let mut i = 0;
+    while i < BOTH {
+        names[i] = if i < A { first[i] } else { second[i - A] };
+        i += 1;
+    }
+    names
+}
 
 /// The format of tables: of all but a few that are small, or hold what no logarithm could.
 fn table_format(facts: &Facts) -> ImageFormat {

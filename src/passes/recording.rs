@@ -10,9 +10,10 @@ use super::blocks::{
     local_light_blocks, observer_block, volume_blocks, volume_phases, volume_samples,
 };
 use super::display::pre_exposure;
+use super::host_froxels::FroxelGridBlock;
 use super::{
-    HostFrame, HostLeft, Pass, RenderError, Resources, definitions, display, interpolate, optical_depth, ordinates,
-    sky_view,
+    HostFrame, HostLeft, Pass, RenderError, Resources, definitions, display, host_froxels, interpolate, optical_depth,
+    ordinates, sky_view,
 };
 use crate::gpu::{Commands, Completed, GpuBuffer, GpuImage, Resource, Work};
 use crate::plan::{Facts, Surface};
@@ -67,7 +68,7 @@ impl<'a> Recording<'a> {
             resources.fill_buffer("cloud_terms", &cloud_terms(facts))?;
             resources.fill_buffer("cloud_matter", &cloud_matter(facts))?;
         }
-        if facts.has_local_media() {
+        if facts.has_local_media() || facts.froxels.is_some() {
             let lamps = lamps(facts);
             let lists = LocalLists::new(facts, &lamps);
             resources.angular_fields.prepare(facts);
@@ -80,6 +81,9 @@ impl<'a> Recording<'a> {
             resources.fill_buffer("angular_fields", &resources.angular_fields.to_texels())?;
             let slab_fields = resources.slab_fields.to_texels(facts);
             resources.fill_buffer("slab_fields", &slab_fields)?;
+        }
+        if let Some(grid) = resources.host_frame().and_then(|frame| FroxelGridBlock::new(facts, frame)) {
+            resources.fill_buffer("froxel_grid", &[grid])?;
         }
         if let Some(terrain) = facts.scene.terrain.as_ref() {
             resources.fill_buffer("height_field", &height_field_block(terrain))?;
@@ -159,7 +163,9 @@ impl<'a> Recording<'a> {
             Some(host) => {
                 let mut left = |image| commands.hand_back_to_host(image);
                 let depth = host.frame.depth.as_ref().map(|depth| left(&depth.image));
-                let left = HostLeft { colour: left(&host.frame.colour), depth };
+                let froxels = host.frame.froxels.as_ref();
+                let froxels = froxels.map(|froxels| [left(&froxels.radiance), left(&froxels.transmittance)]);
+                let left = HostLeft { colour: left(&host.frame.colour), depth, froxels };
                 host.recorded = Some((commands.hand_over_to_host(), left));
                 Completed { times: Vec::new(), clock: None }
             }
@@ -177,6 +183,7 @@ fn flags(pass: &str, recording: &Recording) -> Option<Vec<&'static str>> {
         "sky_view" => Some(sky_view::flags(recording)),
         "interpolate" => Some(interpolate::flags(recording)),
         "display" => Some(display::flags(recording)),
+        "host_froxels" => Some(host_froxels::flags(recording)),
         "emission_order"
         | "view_emission"
         | "aerial_optical_depth"

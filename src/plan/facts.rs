@@ -13,7 +13,9 @@ use super::lights::{local_lights, shining_lights, sort_lights};
 use super::seen_volumes::seen_volumes;
 use super::thick;
 use super::thin;
-use super::{CloudScattering, OutOfView, PlanError, Sequence, Settings, SourceGrid, TableFormat, Treatment};
+use super::{
+    CloudScattering, FroxelGrid, OutOfView, PlanError, Sequence, Settings, SourceGrid, TableFormat, Treatment,
+};
 use crate::probe::Orders;
 use crate::scene::{DirectionalLight, GroupColour, PointLight, Scene, WavelengthGroup};
 
@@ -109,6 +111,8 @@ pub struct Facts<'a> {
     pub viewpoint: Viewpoint,
     /// What stands before it besides the ground.
     pub surface: Option<Surface>,
+    /// Where a host wants to know what lies before the camera; nowhere without one.
+    pub froxels: Option<FroxelGrid>,
     /// Where this frame stands among others; none for one that stands alone.
     pub sequence: Option<Sequence>,
     /// Whether nobody reads the frame's radiance but the picture for a screen, for which half floats will do.
@@ -183,6 +187,7 @@ impl<'a> Facts<'a> {
                 _ => Viewpoint::InSpace,
             },
             surface: None,
+            froxels: None,
             sequence: None,
             for_screen: false,
             out_of_view: OutOfView::default(),
@@ -193,6 +198,11 @@ impl<'a> Facts<'a> {
     /// With something that stands before the camera.
     pub fn with_surface(self, surface: Option<Surface>) -> Self {
         Self { surface, ..self }
+    }
+
+    /// With froxels for a host.
+    pub fn with_froxels(self, froxels: Option<FroxelGrid>) -> Self {
+        Self { froxels, ..self }
     }
 
     /// As one of a sequence of frames.

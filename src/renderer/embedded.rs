@@ -2,9 +2,9 @@
 
 use super::Renderer;
 use crate::gpu::{HostCommands, HostRecorded};
-use crate::passes::{CLOUDS, FRAME, HOST_COLOUR, HOST_SURFACE, RenderError, TABLES};
-use crate::passes::{HostFrame, HostLeft, HostRecording};
-use crate::plan::{Facts, Outputs, Plan, PlanError, Settings, Surface};
+use crate::passes::{CLOUDS, FRAME, HOST_COLOUR, HOST_FROXELS, HOST_SURFACE, RenderError, TABLES};
+use crate::passes::{HostFrame, HostFroxels, HostLeft, HostRecording};
+use crate::plan::{Facts, FroxelGrid, Outputs, Plan, PlanError, Settings, Surface};
 use crate::probe::Orders;
 use crate::scene::Scene;
 
@@ -20,7 +20,7 @@ pub struct HostedFrame {
 
 impl Renderer {
     /// Records what the scene's camera sees into a command buffer of a host's: sky, ground and clouds where its depth image
-    /// shows no surface, and the air before its surfaces; for a renderer on a device of [`crate::gpu::Gpu::on_host`].
+    /// shows no surface, and the air before its surfaces; what lies before the froxels that it asks for; for a renderer on a device of [`crate::gpu::Gpu::on_host`].
     /// Nothing is submitted or waited for, so any number of frames may be in flight. Frames follow one another as with
     /// [`Renderer::render_next`]. The scene's camera must be that of the host.
     ///
@@ -41,8 +41,10 @@ impl Renderer {
         frame.check(&scene.camera)?;
         self.foregrounds += 1;
         let surface = frame.depth.as_ref().map(|_| Surface::Given(self.foregrounds));
+        let froxels = frame.froxels.as_ref().map(HostFroxels::grid);
         self.resources.host = Some(HostRecording { commands: Some(commands), frame: frame.clone(), recorded: None });
-        let plan = self.next_frame(scene, settings, |renderer| renderer.record_passes(scene, settings, surface));
+        let plan =
+            self.next_frame(scene, settings, |renderer| renderer.record_passes(scene, settings, surface, froxels));
         let host = self.resources.host.take();
         let plan = plan?;
         let (recorded, left) = host.and_then(|host| host.recorded).expect("what has run has recorded the host's frame");
@@ -61,14 +63,19 @@ impl Renderer {
         scene: &Scene,
         settings: Settings,
         surface: Option<Surface>,
+        froxels: Option<FroxelGrid>,
     ) -> Result<Plan, RenderError> {
         let mut facts = Facts::new(scene, settings, Orders::All, Outputs::default())?.in_picture();
         if surface.is_some() {
             facts = facts.with_surface(surface);
         }
-        let passes: Vec<_> =
-            TABLES.iter().chain(&CLOUDS).chain([&HOST_SURFACE]).chain(&FRAME).chain([&HOST_COLOUR]).collect();
-        self.history.forget(HOST_COLOUR.declaration.name);
+        facts = facts.with_froxels(froxels);
+        let before = TABLES.iter().chain(&CLOUDS).chain([&HOST_SURFACE]);
+        let passes: Vec<_> = before.chain(&FRAME).chain([&HOST_COLOUR]).chain(&HOST_FROXELS).collect();
+        // The host's images are others, or hold something else, in every frame.
+        for pass in [&HOST_COLOUR, &HOST_FROXELS[1]] {
+            self.history.forget(pass.declaration.name);
+        }
         Ok(self.execute("frame", &facts, &passes)?.plan)
     }
 }
