@@ -2,7 +2,7 @@
 //
 // The ray is cut where it crosses a layer's base or top; gaps are taken in one step, and inside layers steps skip what
 // is certainly empty. In a step the light is integrated with its own attenuation, so that no step is too long for
-// energy. Steps start at a place of their own in each pixel, by a hash: the same picture every time.
+// energy. Steps start at a place of their own in each pixel, by blue noise: the same picture every time.
 //
 // One pixel of every block of CLOUD_BLOCK x CLOUD_BLOCK is marched, another one each frame; the ray ends at a surface that
 // stands before the camera.
@@ -155,7 +155,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let pixel = BLOCK * id.xy + cloud_frame.first_pixel;
     var ray = ray_of(pixel);
     var phase = phases(ray.direction);
-    let offset = place_in_step(pixel, cloud_frame.jitter);
+    let offset = place_in_step(id.xy, cloud_frame.jitter);
     var sum: Sum;
     var air = clear_air();
     var march: March;

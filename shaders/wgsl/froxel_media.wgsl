@@ -29,7 +29,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let pixel = vec2<u32>(column_place(column, size.xy));
     var ray = clear_way_along(column_direction(column, size.xy), pixel);
-    let offset = place_in_step(pixel, 0.0);
+    let offset = place_in_step(column, 0.0);
     var phase: array<f32, PHASE_SLOTS>;
 #ifdef CLOUDS
     phase = phases(ray.direction);

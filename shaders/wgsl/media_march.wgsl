@@ -15,7 +15,6 @@
 #import welkin::cloud_field::cloud_layers
 #endif
 #import welkin::cloud_field::{to_map, CLOUD_LAYER_COUNT}
-#import welkin::cloud_noise::hash
 #import welkin::geometry
 #import welkin::observer::observer
 #import welkin::tables::optical_depth_to_top
@@ -141,9 +140,14 @@ fn growth_behind(depth: f32) -> f32 {
     return clamp(depth / SMOOTH_DEPTH, 1.0, SMOOTH_GROWTH);
 }
 
-// Where a pixel looks at each of its steps, in [0, 1).
-fn place_in_step(pixel: vec2<u32>, jitter: f32) -> f32 {
-    return fract(f32(hash(vec3<i32>(vec2<i32>(pixel), 0), 1u) >> 8u) / 16777216.0 + jitter);
+// A tile of blue noise in rows, in [0, 1).
+@group(1) @binding(57) var<storage, read> blue_noise: array<f32>;
+const NOISE_SIDE: u32 = 64u;
+
+// Where a ray looks at each of its steps, in [0, 1): as unlike its neighbours as can be. Rays side by side have numbers side by side.
+fn place_in_step(number: vec2<u32>, jitter: f32) -> f32 {
+    let within = number % NOISE_SIDE;
+    return fract(blue_noise[within.y * NOISE_SIDE + within.x] + jitter);
 }
 
 // The air along a ray. It changes less than media do, so it is followed in strides of its own, behind the march.

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use welkin_shaders::{Definition, Definitions};
 
 use super::blocks::{
-    CameraBlock, LocalLists, ZONAL_COUNT, atmosphere_block, cloud_frame_block, cloud_layers, cloud_matter, cloud_terms,
-    cosine_nodes, emission_block, gauss_nodes, grid_nodes, height_field_block, lamps, legendre_moments,
+    CameraBlock, LocalLists, ZONAL_COUNT, atmosphere_block, blue_noise, cloud_frame_block, cloud_layers, cloud_matter,
+    cloud_terms, cosine_nodes, emission_block, gauss_nodes, grid_nodes, height_field_block, lamps, legendre_moments,
     local_light_blocks, observer_block, volume_blocks, volume_phases, volume_samples,
 };
 use super::display::pre_exposure;
@@ -61,6 +61,9 @@ impl<'a> Recording<'a> {
         resources.fill_buffer("legendre_moments", &legendre_moments(facts, facts.degree_count()))?;
         if !facts.emitters.is_empty() {
             resources.fill_buffer("zonal_moments", &legendre_moments(facts, ZONAL_COUNT))?;
+        }
+        if facts.has_overlay() {
+            resources.fill_buffer("blue_noise", blue_noise())?;
         }
         if !facts.clouds.is_empty() {
             resources.fill_buffer("cloud_layers", &cloud_layers(facts))?;

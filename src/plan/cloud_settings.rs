@@ -77,8 +77,8 @@ impl CloudSettings {
             ordinate_cell_m: 120,
             ordinate_cells: 64,
             near_samples: 6,
-            step_m: 15,
-            step_permille: 5,
+            step_m: 30,
+            step_permille: 10,
             max_steps: 384,
             grid_size: 96,
             grid_slices: 12,
@@ -93,8 +93,8 @@ impl CloudSettings {
                 ordinate_cell_m: 240,
                 ordinate_cells: 32,
                 near_samples: 0,
-                step_m: 30,
-                step_permille: 10,
+                step_m: 60,
+                step_permille: 20,
                 max_steps: 192,
                 grid_size: 64,
                 grid_slices: 8,
@@ -103,13 +103,13 @@ impl CloudSettings {
             },
             Quality::Medium => medium,
             Quality::High => {
-                Self { sweeps: 32, step_m: 10, step_permille: 3, max_steps: 640, grid_slices: 16, block: 2, ..medium }
+                Self { sweeps: 32, step_m: 15, step_permille: 5, max_steps: 640, grid_slices: 16, block: 2, ..medium }
             }
             Quality::Ultra => Self {
                 sweeps: 48,
                 ordinate_cell_m: 60,
-                step_m: 5,
-                step_permille: 2,
+                step_m: 8,
+                step_permille: 3,
                 max_steps: 1280,
                 grid_size: 128,
                 grid_slices: 24,

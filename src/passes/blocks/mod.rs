@@ -2,6 +2,7 @@
 
 mod angular_fields;
 mod atmosphere;
+mod blue_noise;
 mod camera;
 mod cloud_frame;
 mod clouds;
@@ -17,6 +18,7 @@ mod volumes;
 
 pub use angular_fields::AngularFields;
 pub use atmosphere::{atmosphere_block, legendre_moments, lobe_count};
+pub use blue_noise::blue_noise;
 pub use camera::CameraBlock;
 pub use cloud_frame::cloud_frame_block;
 pub use clouds::{cloud_layers, cloud_matter, cloud_term_count, cloud_terms};
