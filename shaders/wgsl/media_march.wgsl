@@ -5,7 +5,7 @@
 // scattered per optical depth does not change along the ray. Media take from it where they stand before the first light; what
 // clouds scatter down adds to the air's diffuse light.
 //
-// Definitions: CLOUDS; SURFACE; AIR; FOG_COUNT.
+// Definitions: CLOUDS; SURFACE; AIR; FOG_COUNT; CLOUD_STEP_M and CLOUD_STEP_PERMILLE, also without clouds.
 
 #import welkin::atmosphere::{atmosphere, extinction_at}
 #import welkin::attenuation::opacity
@@ -38,7 +38,7 @@ const CROSSING_SLOTS: u32 = max(CROSSINGS, 1u);
 // hundred thousand times as bright as the sky, is hidden as well.
 const OPAQUE: f32 = 24.0;
 // From this depth on steps grow in proportion to it, up to so many times: what is seen there is smooth.
-const SMOOTH_DEPTH: f32 = 4.0;
+const SMOOTH_DEPTH: f32 = 2.0;
 const SMOOTH_GROWTH: f32 = 4.0;
 
 struct Ray {
@@ -202,9 +202,12 @@ fn add_air(air: ptr<function, Air>, map: vec2<f32>, altitude: f32, share: vec3<f
 #endif
 }
 
-// Steps through air, whose light changes where shadows of clouds lie, m; longer in the distance.
-const AIR_STEP_M: f32 = 400.0;
-const AIR_STEP_GROWTH: f32 = 0.05;
+// Steps through air, whose light changes where shadows of clouds lie, are so many times as long as those through clouds; as these are, longer
+// in the distance.
+const AIR_STRIDE: f32 = 26.0;
+const AIR_STEP_M: f32 = AIR_STRIDE * #{CLOUD_STEP_M}.0;
+const AIR_STRIDE_GROWTH: f32 = 10.0;
+const AIR_STEP_GROWTH: f32 = AIR_STRIDE_GROWTH * 0.001 * #{CLOUD_STEP_PERMILLE}.0;
 const AIR_STEPS: f32 = 24.0;
 
 fn air_step_m(air: ptr<function, Air>) -> f32 {
