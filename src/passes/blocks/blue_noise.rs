@@ -63,7 +63,7 @@ impl Pattern {
 fn ranks() -> [usize; PIXELS] {
     let mut first = Pattern { is_set: vec![false; PIXELS], crowding: vec![0.0; PIXELS] };
     let mut random = Pcg32::new(1, 1);
-    (0..PIXELS).filter(|_| random.next_u32() % FIRST_PART == 0).for_each(|pixel| first.set(pixel, true));
+    (0..PIXELS).filter(|_| random.next_u32().is_multiple_of(FIRST_PART)).for_each(|pixel| first.set(pixel, true));
     // Points go from clusters to voids until none would move.
     loop {
         let from = first.tightest_cluster();
