@@ -43,9 +43,11 @@ const FOG: &str = "[[fog]]\nextinction_per_m = 0.002\nprofile.layer = { top_m = 
                    [[light.point]]\nname = \"lamp\"\nposition_m = [300, 50, 20]\nintensity = [2e4, 2e4, 1e4]\n";
 const CLOUDS: &str = "[[clouds]]\nkind = \"stratocumulus\"\n";
 
-/// Every pixel marched, so that what is interpolated is what the froxels are.
+/// Every pixel marched, so that what is interpolated is what the froxels are, in steps through clouds of `medium`.
 fn settings() -> Settings {
     let mut settings = Settings::of(Quality::Low);
+    let medium = Settings::of(Quality::Medium).clouds;
+    (settings.clouds.step_m, settings.clouds.step_permille) = (medium.step_m, medium.step_permille);
     settings.volumes.lattice_permille = 0;
     settings
 }

@@ -6,7 +6,7 @@
 struct CloudFrame {
     // In each block the pixel that is marched.
     first_pixel: vec2<u32>,
-    // Added to the place of samples in their steps; another one in each frame, so that the pixels of a block have unlike ones.
+    // Added to the place of samples in their steps; another one each time that a pixel comes round.
     jitter: f32,
     // 1 where camera, clouds and lights are those of the frame before, else 0.
     still: f32,

@@ -38,6 +38,8 @@ const INFINITY_BITS: u32 = 0x7f800000u;
 const BLOCK: u32 = #{CLOUD_BLOCK}u;
 const MAX_STEPS: u32 = #{CLOUD_MAX_STEPS}u;
 const STEP_M: f32 = #{CLOUD_STEP_M}.0;
+// Behind it steps grow.
+const SMOOTH_DEPTH: f32 = 2.0;
 // Steps after which what lies beside is waited for.
 const LOOKS: u32 = 16u;
 const STEP_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
@@ -72,7 +74,7 @@ struct March {
 // do each together, however few of them meet a cloud at the same step (Aila & Laine 2009, Understanding the efficiency of ray
 // traversal on GPUs).
 fn find_cloud(march: ptr<function, March>, ray: ptr<function, Ray>, offset: f32, clouds: f32) -> bool {
-    let growth = growth_behind(clouds);
+    let growth = growth_behind(clouds, SMOOTH_DEPTH);
     while (*march).steps < MAX_STEPS && (*march).t_m < (*ray).end_m {
         let t_m = (*march).t_m;
         if t_m >= (*march).boundary_m {
@@ -155,7 +157,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let pixel = BLOCK * id.xy + cloud_frame.first_pixel;
     var ray = ray_of(pixel);
     var phase = phases(ray.direction);
-    let offset = place_in_step(id.xy, cloud_frame.jitter);
+    let offset = place_in_step(pixel, cloud_frame.jitter);
     var sum: Sum;
     var air = clear_air();
     var march: March;

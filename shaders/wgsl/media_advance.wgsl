@@ -24,6 +24,8 @@
 #endif
 
 const MAX_STEPS: u32 = #{VOLUME_MAX_STEPS}u;
+// Behind it steps grow. Lamps deep in matter are not smooth: twice the depth of clouds that none lights.
+const SMOOTH_DEPTH: f32 = 4.0;
 #ifdef CLOUDS
 const PHASE_SLOTS: u32 = PHASE_COUNT;
 #else
@@ -72,7 +74,7 @@ fn advance(march: ptr<function, March>, sum: ptr<function, Sum>, air: ptr<functi
         return;
     }
 #endif
-    let step = next_step(ray, t_m, boundary_m, here, growth_behind(greatest(before)), select(0.5, offset, here.uneven));
+    let step = next_step(ray, t_m, boundary_m, here, growth_behind(greatest(before), SMOOTH_DEPTH), select(0.5, offset, here.uneven));
     let air_leaves = through_air(air, t_m);
     let cloudy = cloudiness(step, here);
     let stretch = stretch_of(*sum, ray, t_m, step, cloudy);

@@ -37,8 +37,7 @@ const CROSSING_SLOTS: u32 = max(CROSSINGS, 1u);
 // by only that share of the depth which turns it away, a quarter for droplets: e^-6 of it is left here. A light's disc, a
 // hundred thousand times as bright as the sky, is hidden as well.
 const OPAQUE: f32 = 24.0;
-// From this depth on steps grow in proportion to it, up to so many times: what is seen there is smooth.
-const SMOOTH_DEPTH: f32 = 2.0;
+// From a depth on steps grow in proportion to it, up to so many times: what is seen there is smooth.
 const SMOOTH_GROWTH: f32 = 4.0;
 
 struct Ray {
@@ -135,9 +134,9 @@ fn next_crossing_m(ray: ptr<function, Ray>, t_m: f32) -> f32 {
     return min(next, (*ray).end_m);
 }
 
-// How much longer steps may be behind an optical depth.
-fn growth_behind(depth: f32) -> f32 {
-    return clamp(depth / SMOOTH_DEPTH, 1.0, SMOOTH_GROWTH);
+// How much longer steps may be behind an optical depth, if they may be from a depth on.
+fn growth_behind(depth: f32, smooth_depth: f32) -> f32 {
+    return clamp(depth / smooth_depth, 1.0, SMOOTH_GROWTH);
 }
 
 // A tile of blue noise in rows, in [0, 1).

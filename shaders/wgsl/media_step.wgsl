@@ -3,7 +3,7 @@
 //
 // Steps are as long as the detail of what is there, and grow with the distance. In a step extinction is constant.
 //
-// Definitions: CLOUDS; VOLUME_GROWTH_PERMILLE, a step's share of the distance; LOCAL_VOLUMES (some volume is no fog); FOG_COUNT.
+// Definitions: CLOUDS; VOLUME_GROWTH_PERMILLE, a step's share of the distance; LOCAL_VOLUMES (some volume is no fog); FOG_COUNT; LOCAL_LIGHT_COUNT.
 
 #import welkin::atmosphere::atmosphere
 #import welkin::cluster_members::{next_member, volumes_of, NONE}
@@ -28,8 +28,14 @@ const STEP_DEPTH: f32 = 0.7;
 const BEAM_DEPTH: f32 = 0.3;
 const BEAM_GROWTH: f32 = 0.3;
 #ifdef CLOUDS
-const CLOUD_STEP_M: f32 = #{CLOUD_STEP_M}.0;
-const CLOUD_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
+// A lamp's light changes more within a cloud than the sun's.
+#if LOCAL_LIGHT_COUNT > 0
+const CLOUD_STEP_SHARE: f32 = 0.5;
+#else
+const CLOUD_STEP_SHARE: f32 = 1.0;
+#endif
+const CLOUD_STEP_M: f32 = CLOUD_STEP_SHARE * #{CLOUD_STEP_M}.0;
+const CLOUD_GROWTH: f32 = CLOUD_STEP_SHARE * 0.001 * #{CLOUD_STEP_PERMILLE}.0;
 #endif
 
 fn greatest(v: vec3<f32>) -> f32 {

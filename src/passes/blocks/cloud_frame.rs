@@ -32,7 +32,7 @@ pub fn cloud_frame_block(facts: &Facts) -> Vec<u8> {
     let camera = CameraBlock::new(&before.camera, 1.0);
     let header = CloudFrameHeader {
         first_pixel: pixel_of_block(block, index % (block * block)),
-        jitter: (f64::from(index) * GOLDEN_RATIO).fract() as f32,
+        jitter: (f64::from(index / (block * block)) * GOLDEN_RATIO).fract() as f32,
         still: if facts.sequence.is_some_and(|sequence| sequence.is_still) { 1.0 } else { 0.0 },
         forward: camera.forward,
         half_width: camera.half_width,
