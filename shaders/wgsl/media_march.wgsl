@@ -5,7 +5,7 @@
 // scattered per optical depth does not change along the ray. Media take from it where they stand before the first light; what
 // clouds scatter down adds to the air's diffuse light.
 //
-// Definitions: CLOUDS; SURFACE; AIR; FOG_COUNT; CLOUD_STEP_M and CLOUD_STEP_PERMILLE, also without clouds.
+// Definitions: CLOUDS; SURFACE; AIR; FOG_COUNT.
 
 #import welkin::atmosphere::{atmosphere, extinction_at}
 #import welkin::attenuation::opacity
@@ -201,12 +201,10 @@ fn add_air(air: ptr<function, Air>, map: vec2<f32>, altitude: f32, share: vec3<f
 #endif
 }
 
-// Steps through air, whose light changes where shadows of clouds lie, are so many times as long as those through clouds; as these are, longer
-// in the distance.
-const AIR_STRIDE: f32 = 26.0;
-const AIR_STEP_M: f32 = AIR_STRIDE * #{CLOUD_STEP_M}.0;
-const AIR_STRIDE_GROWTH: f32 = 10.0;
-const AIR_STEP_GROWTH: f32 = AIR_STRIDE_GROWTH * 0.001 * #{CLOUD_STEP_PERMILLE}.0;
+// Steps through air, whose light changes where shadows of clouds lie, m; longer in the distance. Twice as long, they show as bands in clear sky
+// where one more begins.
+const AIR_STEP_M: f32 = 400.0;
+const AIR_STEP_GROWTH: f32 = 0.05;
 const AIR_STEPS: f32 = 24.0;
 
 fn air_step_m(air: ptr<function, Air>) -> f32 {

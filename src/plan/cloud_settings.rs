@@ -93,8 +93,6 @@ impl CloudSettings {
                 ordinate_cell_m: 240,
                 ordinate_cells: 32,
                 near_samples: 0,
-                step_m: 60,
-                step_permille: 20,
                 max_steps: 192,
                 grid_size: 64,
                 grid_slices: 8,
