@@ -43,11 +43,9 @@ const FOG: &str = "[[fog]]\nextinction_per_m = 0.002\nprofile.layer = { top_m = 
                    [[light.point]]\nname = \"lamp\"\nposition_m = [300, 50, 20]\nintensity = [2e4, 2e4, 1e4]\n";
 const CLOUDS: &str = "[[clouds]]\nkind = \"stratocumulus\"\n";
 
-/// Every pixel marched, so that what is interpolated is what the froxels are, in steps through clouds of `medium`.
+/// Every pixel marched, so that what is interpolated is what the froxels are.
 fn settings() -> Settings {
     let mut settings = Settings::of(Quality::Low);
-    let medium = Settings::of(Quality::Medium).clouds;
-    (settings.clouds.step_m, settings.clouds.step_permille) = (medium.step_m, medium.step_permille);
     settings.volumes.lattice_permille = 0;
     settings
 }
@@ -179,7 +177,7 @@ fn froxels_are_made_only_where_they_are_asked_for_and_media_only_when_something_
     let mut left = [HostUse::default(); 2];
     let mut decisions = |scene: &Scene, frame: &HostFrame| {
         let slot = &engine.slots[0];
-        let hosted = frames::hosted(&engine, slot, &mut renderer, scene, settings(), frame, &mut left).unwrap();
+        let hosted = frames::record(&engine, slot, &mut renderer, scene, settings(), frame, &mut left).unwrap();
         engine.submit(slot).unwrap();
         engine.finish().unwrap();
         ["aerial_perspective", "froxel_media", "host_froxels"].map(|pass| hosted.plan.decision(pass).unwrap())

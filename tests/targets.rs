@@ -280,14 +280,14 @@ fn a_frame_that_is_given_up_leaves_nothing_for_the_next() {
     let mut renderer = Renderer::on(gpu.clone()).unwrap();
     let mut left = [HostUse::default(); 2];
     let mut record = |renderer: &mut Renderer, slot, scene: &Scene| {
-        frames::record(&engine, &engine.slots[slot], renderer, scene, settings(), &frame, &mut left).unwrap()
+        frames::record(&engine, &engine.slots[slot], renderer, scene, settings(), &frame, &mut left).unwrap().recorded
     };
     // Its tables were never computed, though they are recorded.
     let recorded = record(&mut renderer, 0, &scene(20.0, ""));
     renderer.abandon(recorded);
     left = [HostUse::default(); 2];
     let mut record = |renderer: &mut Renderer, slot, scene: &Scene| {
-        frames::record(&engine, &engine.slots[slot], renderer, scene, settings(), &frame, &mut left).unwrap()
+        frames::record(&engine, &engine.slots[slot], renderer, scene, settings(), &frame, &mut left).unwrap().recorded
     };
     let recorded = record(&mut renderer, 1, &scene(20.0, ""));
     engine.submit(&engine.slots[1]).unwrap();

@@ -48,7 +48,7 @@ pub fn frame(engine: &Engine, gpu: &Gpu, units_per_radiance: f64) -> anyhow::Res
 }
 
 /// Records a frame: the engine's walls, then the sky. `left` is how the frame before has left colour and depth.
-pub fn hosted(
+pub fn record(
     engine: &Engine,
     slot: &Slot,
     renderer: &mut Renderer,
@@ -65,19 +65,6 @@ pub fn hosted(
     let hosted = renderer.record_frame(commands, scene, settings, frame)?;
     *left = [hosted.left.colour, hosted.left.depth.unwrap_or_default()];
     Ok(hosted)
-}
-
-/// The same, of which only what the device uses is kept.
-pub fn record(
-    engine: &Engine,
-    slot: &Slot,
-    renderer: &mut Renderer,
-    scene: &Scene,
-    settings: Settings,
-    frame: &HostFrame,
-    left: &mut [HostUse; 2],
-) -> anyhow::Result<HostRecorded> {
-    Ok(hosted(engine, slot, renderer, scene, settings, frame, left)?.recorded)
 }
 
 /// Renders a frame for each scene, two of them in flight, and returns the pictures. Froxels hold what the last of them has found.
@@ -102,7 +89,7 @@ pub fn render(
             pictures.push(engine.picture(slot)?);
             in_flight[index % 2] = None;
         }
-        in_flight[index % 2] = Some(record(engine, slot, &mut renderer, scene, settings, &frame, &mut left)?);
+        in_flight[index % 2] = Some(record(engine, slot, &mut renderer, scene, settings, &frame, &mut left)?.recorded);
         if let Some(froxels) = froxels {
             froxels.copy(engine, slot);
         }
