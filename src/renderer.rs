@@ -2,6 +2,7 @@
 
 mod bake;
 mod embedded;
+mod pending;
 mod prices;
 mod sequence;
 mod spectral;
@@ -19,10 +20,12 @@ use crate::passes::{
 };
 use crate::plan::{Decision, Facts, History, Outputs, Plan, PlanError, Sequence, Settings, Surface, TableFormat};
 use crate::probe::{Orders, Ray, RayRadiance};
-use crate::scene::{Camera, Light, Scene};
+use crate::scene::{Light, Scene};
 
 pub use crate::passes::{DepthBuffer, HostDepth, HostFrame, HostFroxels, HostLeft};
 pub use embedded::HostedFrame;
+pub use pending::PendingFrame;
+use pending::ToChannels;
 pub use prices::{Price, prices};
 use sequence::Before;
 pub use targets::Targets;
@@ -176,6 +179,19 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Plan`] when the scene asks for more than the renderer can do; device and shader errors.
     pub fn render(&mut self, scene: &Scene, settings: Settings, outputs: Outputs) -> Result<Rendered, RenderError> {
+        self.render_pending(scene, settings, outputs)?.wait()
+    }
+
+    /// The same without waiting for the pixels, so that the next frame can be rendered while they come.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_pending(
+        &mut self,
+        scene: &Scene,
+        settings: Settings,
+        outputs: Outputs,
+    ) -> Result<PendingFrame, RenderError> {
         if scene.spectrum.group_count() > 1 {
             return self.render_groups(scene, settings, outputs);
         }
@@ -201,7 +217,8 @@ impl Renderer {
         passes::upload_foreground(&mut self.resources, &scene.camera, foreground)?;
         self.foregrounds += 1;
         let surface = Some(Surface::Given(self.foregrounds));
-        self.render_frame(&Facts::new(scene, settings, Orders::All, outputs)?.in_picture().with_surface(surface))
+        let facts = Facts::new(scene, settings, Orders::All, outputs)?.in_picture().with_surface(surface);
+        self.render_frame(&facts)?.wait()
     }
 
     /// Renders what the scene's camera sees, and leaves it on the device: as [`Renderer::render`] without its copies. What
@@ -222,12 +239,11 @@ impl Renderer {
         self.execute("frame", &facts, &passes)
     }
 
-    fn render_frame(&mut self, facts: &Facts) -> Result<Rendered, RenderError> {
+    fn render_frame(&mut self, facts: &Facts) -> Result<PendingFrame, RenderError> {
         let passes: Vec<_> = TABLES.iter().chain(&CLOUDS).chain(&FRAME).collect();
         let timings = self.execute("frame", facts, &passes)?;
-        let images = ["radiance_image", "transmittance_image"];
-        let (frame, picture) = self.read_images(&facts.scene.camera, facts.outputs, images)?;
-        Ok(Rendered { frame: spectral::in_channels(frame, facts.scene), picture, timings })
+        let (images, channels) = (["radiance_image", "transmittance_image"], ToChannels::of_bands(facts.scene));
+        self.start_reading(&facts.scene.camera, facts.outputs, images, channels, timings)
     }
 
     /// Radiance along rays, each from its own altitude under its own sun: the scene's first directional light, moved
@@ -341,35 +357,6 @@ impl Renderer {
         let held: Vec<_> = passes.iter().filter(|pass| !freed(pass)).flat_map(|pass| pass.declaration.writes).collect();
         let left = passes.iter().filter(freed).flat_map(|pass| pass.declaration.writes);
         left.filter(|name| !held.contains(name)).for_each(|name| self.resources.release(name));
-    }
-
-    /// Reads radiance and transmittance from the images of those names, distance and the picture.
-    fn read_images(
-        &self,
-        camera: &Camera,
-        outputs: Outputs,
-        [radiance, transmittance]: [&str; 2],
-    ) -> Result<(Frame, Option<Vec<u8>>), RenderError> {
-        let mut frame = Frame::new(camera.width, camera.height);
-        let image = |name| self.resources.existing_image(name);
-        let rgb = |texels: Vec<[f32; 4]>| texels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect::<Vec<_>>();
-        if let Some(radiance) = image(radiance) {
-            frame.radiance = rgb(self.gpu().read_image(radiance)?);
-        }
-        if outputs.capture
-            && let (Some(transmittance), Some(distance)) = (image(transmittance), image("distance_image"))
-        {
-            frame.transmittance = rgb(self.gpu().read_image(transmittance)?);
-            frame.distance_m = self.gpu().read_image(distance)?;
-        }
-        let mut picture = None;
-        if outputs.picture
-            && let Some(image) = image("picture_image")
-        {
-            let texels: Vec<[u8; 4]> = self.gpu().read_image(image)?;
-            picture = Some(texels.into_iter().flat_map(|[r, g, b, _]| [r, g, b]).collect());
-        }
-        Ok((frame, picture))
     }
 }
 

@@ -66,6 +66,27 @@ fn shown((picture, radiance): &(Vec<[u8; 4]>, Vec<[f32; 4]>)) -> (&[[u8; 4]], Ve
 }
 
 #[test]
+fn pixels_that_are_waited_for_later_are_those_of_their_own_frame() {
+    common::with_gpu(|gpu| {
+        let mut wide = scene(-3.0, "");
+        wide.camera.width = 160;
+        let scenes = [scene(20.0, ""), scene(2.0, ""), wide, scene(20.0, "")];
+        let capture = Outputs { capture: true, picture: true };
+        let mut renderer = Renderer::on(gpu.clone()).unwrap();
+        let mut start = |scene: &Scene| renderer.render_pending(scene, settings(), capture).unwrap();
+        // The third is of another size: the images of the first two are freed before anybody has waited for them.
+        let pending: Vec<_> = scenes.iter().map(&mut start).collect();
+        drop(start(&scenes[1]));
+        drop(renderer);
+        for (scene, frame) in scenes.iter().zip(pending) {
+            let later = std::thread::spawn(move || frame.wait().unwrap()).join().unwrap();
+            let at_once = Renderer::on(gpu.clone()).unwrap().render(scene, settings(), capture).unwrap();
+            assert!(later.frame == at_once.frame && later.picture == at_once.picture, "{:?}", scene.camera);
+        }
+    });
+}
+
+#[test]
 fn a_frame_in_the_hosts_images_is_the_frame_that_is_read_back() {
     common::with_gpu(|gpu| {
         let mut renderer = Renderer::on(gpu.clone()).unwrap();

@@ -19,6 +19,7 @@ mod host;
 mod image;
 mod instance;
 mod pace;
+mod pending;
 mod pipeline;
 mod pipeline_cache;
 #[cfg(feature = "window")]
@@ -48,6 +49,7 @@ pub use heap::give_back_freed_memory;
 pub use host::{HOST_EXTENSIONS, HostCommands, HostDevice, HostFeatures, HostImage, HostRecorded, HostUse};
 pub use image::{GpuImage, ImageShape, NextUse};
 pub use pace::Pace;
+pub use pending::PendingImage;
 pub use pipeline::{MAX_UNIFORM_BUFFERS, Pipeline};
 #[cfg(feature = "window")]
 pub use presenter::{FRAMES_IN_FLIGHT, OverlayTarget, Placed, Presenter, RawDevice};
@@ -247,9 +249,15 @@ impl Gpu {
     /// [`GpuError::Size`] unless the image has a whole number of elements; [`GpuError::Recording`];
     /// [`GpuError::Resource`] when nothing has been written to it.
     pub fn read_image<T: AnyBitPattern + NoUninit>(&self, image: &GpuImage) -> Result<Vec<T>, GpuError> {
-        let mut texels = elements::<T>(image.name(), image.bytes())?;
-        transfer::read_image(&self.0, image, bytemuck::cast_slice_mut(&mut texels))?;
-        Ok(texels)
+        self.start_reading_image(image)?.wait()
+    }
+
+    /// The same without waiting: the texels as all that has been submitted so far leaves them.
+    ///
+    /// # Errors
+    /// [`GpuError::Recording`]; [`GpuError::Resource`] when nothing has been written to it.
+    pub fn start_reading_image(&self, image: &GpuImage) -> Result<PendingImage, GpuError> {
+        PendingImage::new(&self.0, image)
     }
 
     /// Replaces a buffer's whole content.

@@ -29,31 +29,34 @@ pub(crate) fn write_image(context: &Arc<Context>, image: &GpuImage, data: &[u8])
     let staging = BufferInner::staging(context, image.name(), image.bytes(), true)?;
     staging.write_mapped(data)?;
     let layout = Layout::TRANSFER_DST_OPTIMAL;
-    with_image(context, image, Use::copy_to(layout), |list| {
+    let list = submit_with_image(context, image, Use::copy_to(layout), |list| {
         // SAFETY: the list is being recorded; image and staging buffer live until it is done and are of one size.
         unsafe {
             let regions = [whole_image(image)];
             context.device.cmd_copy_buffer_to_image(list.raw, staging.raw, image.0.raw, layout, &regions);
         }
-    })
+    })?;
+    list.wait()
 }
 
-/// Reads an image to the host.
-pub(crate) fn read_image(context: &Arc<Context>, image: &GpuImage, data: &mut [u8]) -> Result<(), GpuError> {
+/// Has the device copy an image to memory that the host sees; whoever reads it waits for the list.
+pub(crate) fn submit_image_copy(
+    context: &Arc<Context>,
+    image: &GpuImage,
+) -> Result<(CommandList, BufferInner), GpuError> {
     context.check_idle(&format!("read the image `{}`", image.name()))?;
-    check_image_size(image, data.len() as u64)?;
     check_written(image.name(), &lock(&image.0.state))?;
     let staging = BufferInner::staging(context, image.name(), image.bytes(), false)?;
     let layout = Layout::TRANSFER_SRC_OPTIMAL;
-    with_image(context, image, Use::copy_from(layout), |list| {
-        // SAFETY: as in `write_image`.
+    let list = submit_with_image(context, image, Use::copy_from(layout), |list| {
+        // SAFETY: the list is being recorded; the caller keeps image and staging buffer, which are of one size, until it is done.
         unsafe {
             let regions = [whole_image(image)];
             context.device.cmd_copy_image_to_buffer(list.raw, image.0.raw, layout, staging.raw, &regions);
         }
         record_barrier(context, list, COPY_TO_HOST);
     })?;
-    staging.read_mapped(data)
+    Ok((list, staging))
 }
 
 /// Fills a buffer from the host.
@@ -86,12 +89,12 @@ pub(crate) fn read_buffer(context: &Arc<Context>, buffer: &GpuBuffer, data: &mut
     staging.read_mapped(data)
 }
 
-fn with_image(
+fn submit_with_image(
     context: &Arc<Context>,
     image: &GpuImage,
     next: Use,
     record: impl FnOnce(&CommandList),
-) -> Result<(), GpuError> {
+) -> Result<CommandList, GpuError> {
     let mut list = CommandList::new(context)?;
     let mut state = *lock(&image.0.state);
     let mut barriers = Barriers::default();
@@ -100,9 +103,9 @@ fn with_image(
     }
     barriers.record(&context.device, list.raw);
     record(&list);
-    list.submit_and_wait()?;
+    list.submit(&[], &[])?;
     *lock(&image.0.state) = state;
-    Ok(())
+    Ok(list)
 }
 
 fn with_buffer(

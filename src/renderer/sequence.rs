@@ -1,6 +1,6 @@
 //! Frames that follow one another, of which each takes over what still holds of the clouds in the one before.
 
-use super::{Rendered, Renderer, Targets, Timings};
+use super::{PendingFrame, Rendered, Renderer, Targets, Timings};
 use crate::gpu::NextUse;
 use crate::passes::RenderError;
 use crate::passes::ordinates;
@@ -43,7 +43,20 @@ impl Renderer {
         settings: Settings,
         outputs: Outputs,
     ) -> Result<Rendered, RenderError> {
-        self.next_frame(scene, settings, |renderer| renderer.render(scene, settings, outputs))
+        self.render_next_pending(scene, settings, outputs)?.wait()
+    }
+
+    /// The same without waiting for the pixels, as [`Renderer::render_pending`].
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_next_pending(
+        &mut self,
+        scene: &Scene,
+        settings: Settings,
+        outputs: Outputs,
+    ) -> Result<PendingFrame, RenderError> {
+        self.next_frame(scene, settings, |renderer| renderer.render_pending(scene, settings, outputs))
     }
 
     /// As [`Renderer::render_to`], as the next frame of a sequence.

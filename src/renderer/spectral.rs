@@ -3,11 +3,8 @@
 //! Tables stay on the device for each group, so that only what a change touches is computed again; the images of a frame
 //! are shared, and what the wavelengths show is added up in them.
 
-use glam::{DMat3, DVec3};
-use welkin_lut::spectrum::Channels;
-
-use super::{Rendered, Renderer, Timings};
-use crate::frame::Frame;
+use super::pending::{PendingFrame, ToChannels};
+use super::{Renderer, Timings};
 use crate::passes::{CLOUDS, FRAME, RenderError, SHARED_IMAGES, TABLES};
 use crate::plan::{Facts, History, Outputs, Plan, Settings, SpectralPart};
 use crate::probe::Orders;
@@ -31,10 +28,10 @@ impl Renderer {
         scene: &Scene,
         settings: Settings,
         outputs: Outputs,
-    ) -> Result<Rendered, RenderError> {
+    ) -> Result<PendingFrame, RenderError> {
         let timings = self.execute_groups(scene, settings, outputs)?;
-        let (frame, picture) = self.read_colour(scene, outputs)?;
-        Ok(Rendered { frame, picture, timings })
+        let images = ["colour_image", "colour_transmittance_image"];
+        self.start_reading(&scene.camera, outputs, images, ToChannels::done(scene), timings)
     }
 
     /// Computes the groups one after the other into the shared images.
@@ -57,13 +54,6 @@ impl Renderer {
         let all: Result<Vec<_>, RenderError> = parts(scene).iter().map(run).collect();
         self.select_group(0);
         Ok(joined(all?))
-    }
-
-    fn read_colour(&self, scene: &Scene, outputs: Outputs) -> Result<(Frame, Option<Vec<u8>>), RenderError> {
-        let images = ["colour_image", "colour_transmittance_image"];
-        let (mut frame, picture) = self.read_images(&scene.camera, outputs, images)?;
-        frame.channels = Some(scene.spectrum.channels);
-        Ok((frame, picture))
     }
 
     /// Brings a group's tables and history to the front.
@@ -99,21 +89,4 @@ fn joined(all: Vec<Timings>) -> Timings {
         }
     }
     joined
-}
-
-/// A frame of bands as the channels that its scene asks for.
-pub(super) fn in_channels(mut frame: Frame, scene: &Scene) -> Frame {
-    if scene.spectrum.channels == Channels::Bands {
-        return frame;
-    }
-    let colour = scene.colour()[0];
-    let convert = |pixels: &mut Vec<[f32; 3]>, matrix: DMat3| {
-        for pixel in pixels {
-            *pixel = (matrix * DVec3::from_array(pixel.map(f64::from))).as_vec3().to_array();
-        }
-    };
-    convert(&mut frame.radiance, colour.radiance);
-    convert(&mut frame.transmittance, colour.transmittance);
-    frame.channels = Some(scene.spectrum.channels);
-    frame
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use welkin::foreground::{Depth, Foreground};
 use welkin::output::{DEPTH_CHANNELS, read_exr, read_exr_channel};
 use welkin::plan::Outputs;
+use welkin::renderer::PendingFrame;
 use welkin::scene::{Camera, Scene};
 
 use super::frames::Frames;
@@ -26,34 +27,36 @@ pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<
     let statistics = Statistics::new(&scene.name, chosen, Some(renderer.gpu().info()), &rendered.timings);
     Ok(Rendered {
         frame: rendered.frame,
-        picture: rendered.picture.unwrap_or_default(),
+        picture: rendered.picture,
         text: statistics.to_text(),
         json: statistics.to_json(),
     })
 }
 
-/// Renders frames one after the other and hands each over with its number; returns what all of them took.
+/// A frame of several, whose pixels are on their way.
+pub struct FrameAhead {
+    pub number: u32,
+    pub scene: Scene,
+    pub pixels: PendingFrame,
+    pub statistics: Statistics,
+}
+
+/// Renders frames one after the other and hands each over before its pixels are there.
 pub fn render_frames(
     arguments: &Arguments,
     scene: &Scene,
     outputs: Outputs,
     Frames(numbers): &Frames,
-    mut finish: impl FnMut(u32, &Scene, Rendered) -> Result<(), Failure>,
+    mut finish: impl FnMut(FrameAhead) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let mut renderer = open_renderer(arguments.device.as_deref())?;
     let chosen = arguments.goal.settings(&arguments.accuracy, scene, outputs, Some(&mut renderer))?;
     for number in numbers.clone() {
         let scene = Frames::scene_at(scene, number, arguments.frame_rate);
-        let rendered = renderer.render_next(&scene, chosen.settings, outputs).map_err(failure)?;
+        let pixels = renderer.render_next_pending(&scene, chosen.settings, outputs).map_err(failure)?;
         let name = format!("{}, frame {number}", scene.name);
-        let statistics = Statistics::new(&name, chosen.clone(), Some(renderer.gpu().info()), &rendered.timings);
-        let rendered = Rendered {
-            frame: rendered.frame,
-            picture: rendered.picture.unwrap_or_default(),
-            text: statistics.to_text(),
-            json: statistics.to_json(),
-        };
-        finish(number, &scene, rendered)?;
+        let statistics = Statistics::new(&name, chosen.clone(), Some(renderer.gpu().info()), pixels.timings());
+        finish(FrameAhead { number, scene, pixels, statistics })?;
     }
     Ok(())
 }

@@ -15,9 +15,10 @@ use welkin::plan::Outputs;
 use welkin::scene::Scene;
 
 use frames::{Frames, numbered};
+use gpu::FrameAhead;
 
 use super::accuracy::Accuracy;
-use super::backend::Backend;
+use super::backend::{Backend, failure};
 use super::goal::GoalArguments;
 use super::limit::positive;
 use super::spectrum::SpectrumArguments;
@@ -73,8 +74,8 @@ pub struct Arguments {
 /// What a backend brings back.
 struct Rendered {
     frame: Frame,
-    /// sRGB bytes; empty unless a PNG was asked for.
-    picture: Vec<u8>,
+    /// sRGB bytes, if a PNG was asked for.
+    picture: Option<Vec<u8>>,
     /// What was computed, for people and for programs.
     text: String,
     json: String,
@@ -112,14 +113,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Backend::Gpu => gpu::render(arguments, &scene, outputs)?,
         Backend::Reference => reference::render(arguments, &scene, outputs)?,
     };
-    write_pictures(files, &formats, &rendered, &scene)?;
+    write_pictures(files, &formats, &rendered.frame, rendered.picture.as_deref(), &scene)?;
     if let Some(file) = json_file {
         file.write_all(format!("{}\n", rendered.json).as_bytes())?;
     }
     Ok(stdout::print(&rendered.text)?)
 }
 
-/// Renders frame after frame, and writes each while the next is rendered; what they took is one list in the JSON file.
+/// Renders frame after frame; the pixels of each come, and are written, while the next is rendered. What they took is one list in
+/// the JSON file.
 fn run_frames(
     arguments: &Arguments,
     scene: &Scene,
@@ -131,14 +133,17 @@ fn run_frames(
     let mut all = Vec::new();
     thread::scope(|threads| {
         let mut writing = None;
-        gpu::render_frames(arguments, scene, outputs, frames, |number, scene, rendered| {
+        gpu::render_frames(arguments, scene, outputs, frames, |frame| {
             written(writing.take())?;
+            let FrameAhead { number, scene, pixels, statistics } = frame;
             let paths = arguments.output.iter().map(|path| numbered(path, number));
             let files = paths.map(|path| AtomicFile::create(&path)).collect::<Result<Vec<_>, _>>()?;
-            all.push(rendered.json.clone());
-            stdout::print(&rendered.text)?;
-            let scene = scene.clone();
-            writing = Some(threads.spawn(move || write_pictures(files, formats, &rendered, &scene)));
+            all.push(statistics.to_json());
+            stdout::print(&statistics.to_text())?;
+            writing = Some(threads.spawn(move || {
+                let rendered = pixels.wait().map_err(failure)?;
+                write_pictures(files, formats, &rendered.frame, rendered.picture.as_deref(), &scene)
+            }));
             Ok(())
         })?;
         written(writing)
@@ -157,14 +162,14 @@ fn written(writing: Option<ScopedJoinHandle<Result<(), Failure>>>) -> Result<(),
 fn write_pictures(
     files: Vec<AtomicFile>,
     formats: &[Format],
-    rendered: &Rendered,
+    frame: &Frame,
+    picture: Option<&[u8]>,
     scene: &Scene,
 ) -> Result<(), Failure> {
-    let frame = &rendered.frame;
     for (file, format) in files.into_iter().zip(formats) {
         match format {
             Format::Exr => write_exr(file, frame, scene)?,
-            Format::Png => write_png(file, frame.width, frame.height, &rendered.picture)?,
+            Format::Png => write_png(file, frame.width, frame.height, picture.unwrap_or_default())?,
         }
     }
     Ok(())

@@ -28,10 +28,8 @@ pub fn render(arguments: &Arguments, scene: &Scene, outputs: Outputs) -> Result<
     let (seconds, error) = (started.elapsed().as_secs_f64(), film.relative_error());
     let walks = sampling.most_walks();
     let frame = view.develop(&film);
-    let picture = match outputs.picture {
-        true => display::picture(&frame, display::exposed_srgb(scene), scene.display.tone_map),
-        false => Vec::new(),
-    };
+    let shown = || display::picture(&frame, display::exposed_srgb(scene), scene.display.tone_map);
+    let picture = outputs.picture.then(shown);
     let name = &scene.name;
     Ok(Rendered {
         frame,
