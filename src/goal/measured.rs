@@ -27,8 +27,12 @@ pub struct MeasuredScene {
     pub name: String,
     /// What decides about its errors.
     pub traits: SceneTraits,
-    /// By the name of the step of the ladder: root mean square of the relative error.
+    /// By the name of the step of the ladder: root mean square of the relative error, one standard error of the truth above what was
+    /// measured.
     pub errors: BTreeMap<String, f64>,
+    /// The same, one standard error below.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub least_errors: BTreeMap<String, f64>,
     /// By the name of the step of the ladder: all passes of a first picture, ms.
     pub milliseconds: BTreeMap<String, f64>,
 }

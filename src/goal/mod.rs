@@ -1,11 +1,13 @@
 //! Settings for a goal: a user names an error or a time, and what was measured says which settings come there.
 //!
-//! Errors are predicted from scenes that are like the one at hand ([`predicted_error`]), times from a short measurement
-//! of it on its device ([`Calibration`]). Both know the steps of [`LadderStep`]; the numbers that they start from are made
-//! by `welkin report --learn` and lie beside this file.
+//! Errors are found by trying settings on the scene at hand ([`search`]); where there is no device, or no time for it, they are
+//! predicted from scenes that are like it ([`predicted_error`]). Times follow from a short measurement of the scene on its device
+//! ([`Calibration`]). All know the steps of [`LadderStep`]; the numbers that predictions start from are made by `welkin report
+//! --learn` and lie beside this file.
 
 mod error_model;
 mod measured;
+mod search;
 mod time_model;
 mod trial;
 
@@ -15,6 +17,7 @@ use crate::plan::{LadderStep, SceneKind, SceneTraits, Treatment};
 
 pub use error_model::predicted_error;
 pub use measured::{MeasuredFront, MeasuredScene};
+pub use search::{SearchError, search};
 pub use time_model::{CALIBRATION_STEPS, Calibration, PassTimes, total_ms};
 pub use trial::{TargetTrial, time_ratios};
 

@@ -13,7 +13,8 @@ pub struct Rung(u32);
 
 impl Rung {
     /// From the cheapest to the dearest. They stand closer where presets differ more in price.
-    pub const ALL: [Self; 9] = [Self(0), Self(2), Self(4), Self(6), Self(8), Self(9), Self(10), Self(11), Self(12)];
+    pub const ALL: [Self; 10] =
+        [Self(0), Self(2), Self(4), Self(6), Self(7), Self(8), Self(9), Self(10), Self(11), Self(12)];
 
     /// The preset's.
     pub fn of(quality: Quality) -> Self {

@@ -83,6 +83,19 @@ impl Deviation {
     }
 }
 
+/// Root of the mean squared relative difference of a picture from another, as [`Deviation::rms`] is of one from the truth. None where
+/// nothing is left, or the other picture is black.
+pub fn distance(
+    ours: &[[f32; BAND_COUNT]],
+    other: &[[f32; BAND_COUNT]],
+    channels: Channels,
+    left_out: &[bool],
+) -> Option<f64> {
+    let exact = vec![[0.0; BAND_COUNT]; other.len()];
+    let other = Uncertain { radiance: other, standard_error: &exact, channels: Some(channels) };
+    Some(Deviation::of(ours, &other, left_out)?.rms)
+}
+
 /// Relative error and relative standard error of the truth, in each band of a pixel.
 type BandErrors = [(f64, f64); BAND_COUNT];
 

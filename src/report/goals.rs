@@ -2,9 +2,12 @@
 
 use std::fmt::Write as _;
 
+use super::distance;
 use super::learn::{self, steps};
 use super::results::{SceneResults, Study};
-use crate::goal::{CALIBRATION_STEPS, Calibration, MeasuredFront, MeasuredScene, TargetTrial, time_ratios};
+use crate::goal::{
+    CALIBRATION_STEPS, Calibration, Choice, MeasuredFront, MeasuredScene, TargetTrial, search, time_ratios,
+};
 use crate::plan::{LadderStep, Rung};
 
 /// The errors that are asked for.
@@ -15,65 +18,88 @@ const FRUGAL: f64 = 1.5;
 const NEAR: f64 = 0.2;
 
 /// What the columns of the table are.
-fn headings() -> [String; 7] {
+fn headings() -> [String; 8] {
     let frugal = format!("at most {FRUGAL}");
-    ["target %", "reachable", "chosen", "met", "price: median", &frugal, "most"].map(str::to_owned)
+    ["target %", "reachable", "chosen", "met", "missed", "price: median", &frugal, "most"].map(str::to_owned)
 }
 
-/// How choices fare on the random scenes of a study. They are made from what the program was built with; a scene that it
-/// knows already is left out of that for its own turn.
+/// How choices fare on the random scenes of a study.
 struct Fares {
     scenes: usize,
-    /// How many of them the program does not know.
-    new: usize,
-    trials: Vec<TargetTrial>,
+    /// Found on each scene by its own pictures.
+    found: Vec<TargetTrial>,
+    /// Predicted from the other random scenes.
+    predicted: Vec<TargetTrial>,
     /// Predicted over measured times, in order.
     ratios: Vec<f64>,
 }
 
 impl Fares {
-    /// None where no random scene was measured.
+    /// None where hardly any random scene was measured.
     fn of(study: &Study) -> Option<Self> {
         let random: Vec<&SceneResults> = study.scenes.iter().filter(|scene| scene.random).collect();
         let scenes: Vec<MeasuredScene> = random.iter().map(|scene| learn::measured(scene)).collect();
-        let front = MeasuredFront::built_in();
-        if scenes.is_empty() || front.scenes.is_empty() {
+        // A single scene has no others whose prices and errors could be learned.
+        if scenes.len() < 2 {
             return None;
         }
-        let is_new = |scene: &&MeasuredScene| front.scenes.iter().all(|known| known.name != scene.name);
+        let front = &learn::learn(study);
         let calibrations: Vec<Calibration> = random.iter().map(|scene| calibration(scene)).collect();
+        let choose = |target: f64| {
+            let of = |name: &str| random.iter().find(|scene| scene.scene == name);
+            TargetTrial::of_choices(&scenes, target, |scene| found(front, of(&scene.name)?, target))
+        };
         Some(Self {
             scenes: scenes.len(),
-            new: scenes.iter().filter(is_new).count(),
-            trials: TARGETS.map(|target| TargetTrial::new(front, &scenes, target)).into(),
+            found: TARGETS.map(choose).into(),
+            predicted: TARGETS.map(|target| TargetTrial::of_predictions(front, &scenes, target)).into(),
             ratios: time_ratios(front, &scenes, &calibrations),
         })
     }
 
     /// What the table says; the option's name and *words* are marked by the caller.
-    fn about(&self, option: &str, met: &str, price: &str) -> String {
+    fn about(&self, option: &str, [met, missed, price]: [&str; 3]) -> String {
         format!(
-            "{option} on {} random scenes, {} of them unknown to the model. {met}: the error of the chosen settings, a \
-             standard error of the truth included, is within the target. {price}: time over that of the cheapest settings \
-             that would have met it.",
-            self.scenes, self.new
+            "{option} on {} random scenes, each tried on its own pictures; nothing is learned from the others but the order of \
+             prices. {met}: the error of the chosen settings, a standard error of the truth included, is within the target; \
+             {missed}: even a standard error less is beyond it; of the others the truth's noise does not tell. {price}: time over that of \
+             the cheapest settings that would have met it.",
+            self.scenes
         )
     }
 
-    fn rows(&self) -> impl Iterator<Item = [String; 7]> + '_ {
-        self.trials.iter().map(|trial| {
+    fn rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
+        self.found.iter().map(|trial| {
             let ratios = &trial.price_ratios;
-            let frugal = ratios.iter().filter(|ratio| **ratio <= FRUGAL).count();
             [
                 (100.0 * trial.target).to_string(),
                 trial.reachable.to_string(),
                 trial.chosen.to_string(),
                 trial.met.to_string(),
+                trial.missed.to_string(),
                 quantile(ratios, 0.5),
-                frugal.to_string(),
+                frugal(ratios).to_string(),
                 quantile(ratios, 1.0),
             ]
         })
+    }
+
+    /// All targets in one sentence.
+    fn in_sum(&self) -> String {
+        let sum = |trials: &[TargetTrial]| {
+            let of = |count: fn(&TargetTrial) -> usize| trials.iter().map(count).sum::<usize>();
+            let [chosen, met, missed] = [of(|trial| trial.chosen), of(|trial| trial.met), of(|trial| trial.missed)];
+            let [priced, cheap] = [of(|trial| trial.price_ratios.len()), of(|trial| frugal(&trial.price_ratios))];
+            format!(
+                "{chosen} choices, of which {met} met their target and {missed} missed it; of {priced} with a price {cheap} cost at \
+                 most {FRUGAL} times the cheapest"
+            )
+        };
+        format!(
+            "Together: {}. Without a device, predicted from those of the others that are like each: {}.",
+            sum(&self.found),
+            sum(&self.predicted)
+        )
     }
 
     fn about_times(&self) -> String {
@@ -92,25 +118,43 @@ impl Fares {
     }
 }
 
+fn frugal(ratios: &[f64]) -> usize {
+    ratios.iter().filter(|ratio| **ratio <= FRUGAL).count()
+}
+
+/// What a search on the scene would find, from the pictures that were measured, in the order of what the other scenes cost.
+fn found(front: &MeasuredFront, scene: &SceneResults, target: f64) -> Option<Choice> {
+    let mut front = front.clone();
+    front.scenes.retain(|other| other.name != scene.scene);
+    let picture = |step: LadderStep| scene.pictures.get(&step.to_string());
+    let dearest = scene.pictures.keys().filter_map(|name| LadderStep::from_name(name)).map(|step| step.rung).max()?;
+    let price = |step| Some(front.milliseconds(scene.traits.kind, step));
+    let apart = |step, finest| {
+        let (ours, other) = picture(step).zip(picture(finest)).ok_or(())?;
+        distance(ours, other, scene.channels, &vec![false; ours.len()]).ok_or(())
+    };
+    search(target, dearest, price, apart).ok()
+}
+
 /// A section of Markdown; nothing where no random scene was measured.
 pub fn goal_tables(study: &Study) -> String {
     let Some(fares) = Fares::of(study) else { return String::new() };
-    let about = fares.about("`--target-error`", "*Met*", "*Price*");
+    let about = fares.about("`--target-error`", ["*Met*", "*missed*", "*Price*"]);
     let mut text = format!(
-        "\n## Settings for an error\n\n{about}\n\n| {} |\n|---|---|---|---|---|---|---|\n",
+        "\n## Settings for an error\n\n{about}\n\n| {} |\n|---|---|---|---|---|---|---|---|\n",
         headings().join(" | ")
     );
     for row in fares.rows() {
         let _ = writeln!(text, "| {} |", row.join(" | "));
     }
-    let _ = writeln!(text, "\n{}", fares.about_times());
+    let _ = writeln!(text, "\n{}\n\n{}", fares.in_sum(), fares.about_times());
     text
 }
 
 /// The same as HTML.
 pub fn goal_section(study: &Study) -> String {
     let Some(fares) = Fares::of(study) else { return String::new() };
-    let about = fares.about("<code>--target-error</code>", "<em>Met</em>", "<em>Price</em>");
+    let about = fares.about("<code>--target-error</code>", ["<em>Met</em>", "<em>missed</em>", "<em>Price</em>"]);
     let mut html = format!(
         "<h2>Settings for an error</h2><p>{about}</p>\n<table id=\"goals\"><tr><th>{}</tr>\n",
         headings().join("<th>")
@@ -118,7 +162,7 @@ pub fn goal_section(study: &Study) -> String {
     for row in fares.rows() {
         let _ = writeln!(html, "<tr><td class=\"n\">{}</tr>", row.join("<td class=\"n\">"));
     }
-    let _ = writeln!(html, "</table><p>{}</p>", fares.about_times());
+    let _ = writeln!(html, "</table><p>{}</p><p>{}</p>", fares.in_sum(), fares.about_times());
     html
 }
 

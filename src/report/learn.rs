@@ -42,6 +42,7 @@ pub(super) fn measured(scene: &SceneResults) -> MeasuredScene {
         name: scene.scene.clone(),
         traits: scene.traits,
         errors: by_name(&|point| four_digits(point.error.high)),
+        least_errors: by_name(&|point| four_digits(point.error.low)),
         milliseconds: by_name(&|point| four_digits(point.milliseconds.median)),
     }
 }

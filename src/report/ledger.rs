@@ -33,6 +33,9 @@ pub struct Entry {
     pub milliseconds: BTreeMap<String, f64>,
     /// How far the picture was from the truth.
     pub error: Deviation,
+    /// The picture itself, where pictures of the scene are held against each other: the cells that count.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cells: Vec<[f32; 3]>,
 }
 
 impl Entry {

@@ -15,7 +15,7 @@ pub fn markdown(study: &Study, command: &str) -> String {
         "# What accuracy costs in time\n\nMade by `{command}` at commit {}, on {} ({}); {}. {}\n\n\
          The error of a picture is the root of the mean squared relative error of linear radiance over a grid of its pixels \
          and three bands, against the path tracer; what the tracer's own noise puts in is subtracted, and one standard \
-         error of the result stands behind ±. Time is that of all passes of a first picture, on the device: the median, and \
+         error of the result stands behind ±. Time is that of all passes of a first picture, on the device, once its shaders are compiled: the median, and \
          the quartiles. A preset is *beaten* where something else that was measured is faster and more accurate, and *clearly* \
          so where neither error bars nor quartiles touch.\n",
         from.commit, from.device, from.driver, from.machine, from.load

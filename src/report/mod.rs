@@ -22,7 +22,7 @@ mod table;
 mod truth;
 
 pub use candidate::{Breadth, Candidate, candidates, treatment};
-pub use deviation::{Deviation, Uncertain};
+pub use deviation::{Deviation, Uncertain, distance};
 pub use error::ReportError;
 pub use front::{beats_clearly, front};
 pub use learn::learn;

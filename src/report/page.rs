@@ -30,7 +30,7 @@ pub fn page(study: &Study, pictures: &Path) -> Result<String, ReportError> {
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>What accuracy costs in time</title>\
          <link rel=\"icon\" href=\"data:,\"><style>{STYLE}</style></head><body>\n<h1>What accuracy costs in time</h1>\n\
          <p>welkin {} ({}) on {}, {}. {}. {}</p>\n<p>Error: root mean square of the relative error of linear radiance against \
-         the path tracer, less what its noise puts in, ± one standard error. Time: all passes of a first picture, on the \
+         the path tracer, less what its noise puts in, ± one standard error. Time: all passes of a first picture, once its shaders are compiled, on the \
          device, median and quartiles.</p>\n",
         escape(&from.version),
         escape(&from.commit),

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use welkin_lut::spectrum::Channels;
+
 use super::{Deviation, SlabResults};
 use crate::plan::SceneTraits;
 
@@ -64,6 +66,12 @@ pub struct SceneResults {
     pub truth_walks: u64,
     /// All settings and solvers that were measured.
     pub points: Vec<Point>,
+    /// What the pictures' channels hold; not for files.
+    #[serde(skip)]
+    pub channels: Channels,
+    /// Cells of the pictures by steps of the ladder, of a scene drawn at random; not for files.
+    #[serde(skip)]
+    pub pictures: BTreeMap<String, Vec<[f32; 3]>>,
 }
 
 /// What made a picture.

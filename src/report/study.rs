@@ -85,8 +85,10 @@ pub struct Case {
     pub scene: Scene,
     /// Whether it was drawn at random, for the model of errors.
     pub random: bool,
-    /// Walks of its truth for each pixel.
+    /// Most walks of its truth for each pixel.
     pub walks: u64,
+    /// Relative standard error at which the truth is known well enough; none for all walks.
+    pub truth_error: Option<f64>,
     /// Which settings are measured.
     pub breadth: Breadth,
     /// Walks of the path tracer as it is compared; with them the other solvers are compared too. Empty for none.
@@ -163,7 +165,7 @@ fn prepare(request: &Request, watcher: &impl Watcher) -> Result<(Vec<Prepared>, 
         match candidates(&grid.picture, &case.breadth) {
             Err(error) => left_out.push(LeftOut { scene: name.clone(), reason: error.to_string() }),
             Ok(candidates) => {
-                let truth = truth(&grid.cells, case.walks, &request.cache, watcher)?;
+                let truth = truth(&grid.cells, case.walks, case.truth_error, &request.cache, watcher)?;
                 watcher.shows(&Shown { scene: &grid.cells, by: "truth", frame: &truth.frame, relative: None })?;
                 let (fingerprint, cells) = (fingerprint(&(&grid.picture, truth.walks)), grid.left_out());
                 prepared.push(Prepared { case: case.clone(), fingerprint, left_out: cells, grid, truth, candidates });
@@ -203,8 +205,13 @@ fn measure<M: Measure>(
         let relative = Some(relative(&sampled, &scene.truth.frame));
         watcher.shows(&Shown { scene: &scene.grid.picture, by: preset.name(), frame: &frame, relative })?;
     }
+    let counted = sampled.iter().zip(&scene.left_out).filter(|(_, left_out)| !**left_out);
+    let cells = match scene.case.random && candidate.on_ladder && round == 0 {
+        true => counted.map(|(cell, _)| *cell).collect(),
+        false => Vec::new(),
+    };
     let (scene, name) = (scene.fingerprint.clone(), candidate.name.clone());
-    ledger.add(Entry { scene, name, settings, round, milliseconds, error })
+    ledger.add(Entry { scene, name, settings, round, milliseconds, error, cells })
 }
 
 fn deviation(scene: &Prepared, sampled: &[[f32; 3]]) -> Result<Deviation, ReportError> {
@@ -261,7 +268,15 @@ fn solvers(scene: &Prepared, ledger: &mut Ledger, watcher: &impl Watcher) -> Res
         let scale = pixels(&scene.grid.picture) / pixels(cells);
         let milliseconds = [(ALL_CORES.to_owned(), 1e3 * started.elapsed().as_secs_f64() * scale)].into();
         let error = deviation(scene, &view.develop(&film).radiance)?;
-        ledger.add(Entry { scene: scene.fingerprint.clone(), name, settings, round: 0, milliseconds, error })?;
+        ledger.add(Entry {
+            scene: scene.fingerprint.clone(),
+            name,
+            settings,
+            round: 0,
+            milliseconds,
+            error,
+            cells: Vec::new(),
+        })?;
     }
     Ok(())
 }
@@ -287,6 +302,10 @@ fn gather(scene: &Prepared, repeats: u32, ledger: &Ledger) -> SceneResults {
         points.extend(point(&name, Family::Reference, None, &entries));
     }
     mark_dominated(&mut points);
+    let pictures = scene.candidates.iter().filter_map(|candidate| {
+        let entry = ledger.find(&scene.fingerprint, &candidate.name, &fingerprint(&candidate.settings), 0)?;
+        (!entry.cells.is_empty()).then(|| (candidate.name.clone(), entry.cells.clone()))
+    });
     let camera = &scene.grid.picture.camera;
     SceneResults {
         scene: scene.case.scene.name.clone(),
@@ -296,6 +315,8 @@ fn gather(scene: &Prepared, repeats: u32, ledger: &Ledger) -> SceneResults {
         height: camera.height,
         truth_walks: scene.truth.walks,
         points,
+        channels: scene.grid.picture.spectrum.channels,
+        pictures: pictures.collect(),
     }
 }
 

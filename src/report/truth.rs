@@ -28,15 +28,22 @@ pub struct Truth {
     pub walks: u64,
 }
 
-/// Finds or traces the truth of a scene, with at least so many walks a pixel.
+/// Finds or traces the truth of a scene, with at least so many walks a pixel, or to a relative standard error (the root of its mean
+/// square) that they need not be spent on.
 ///
 /// The cache's files are named by the fingerprint of planet, air, clouds, lights, terrain and camera; a truth with fewer
 /// walks is continued, one with more is taken as it is. An interruption leaves a checkpoint there.
 ///
 /// # Errors
 /// [`ReportError::Interrupted`]; those of the disk; [`ReportError::Solver`].
-pub fn truth(scene: &Scene, walks: u64, cache: &Path, observer: &impl Observer) -> Result<Truth, ReportError> {
-    let sampling = Sampling::new(Some(walks.max(FEWEST_WALKS)), None);
+pub fn truth(
+    scene: &Scene,
+    walks: u64,
+    error: Option<f64>,
+    cache: &Path,
+    observer: &impl Observer,
+) -> Result<Truth, ReportError> {
+    let sampling = Sampling::new(Some(walks.max(FEWEST_WALKS)), error);
     let identity = Identity::new(scene, &Solver::Path, SEED, &sampling, Shard::WHOLE);
     let view = CameraView::new(scene, Solver::Path, SEED, sampling.walks_per_batch)?;
     std::fs::create_dir_all(cache).map_err(|source| ReportError::Cache { path: cache.to_owned(), source })?;
@@ -45,7 +52,9 @@ pub fn truth(scene: &Scene, walks: u64, cache: &Path, observer: &impl Observer) 
         true => picture::load(&path, &identity)?,
         false => Film::new(Shard::WHOLE, view.pixels()),
     };
-    if !(film.is_level() && film.goal >= sampling.stop().most_batches) {
+    let is_enough =
+        film.goal >= sampling.stop().most_batches || error.is_some_and(|error| film.relative_error() <= error);
+    if !(film.is_level() && is_enough) {
         let keeper =
             Keeper { inner: observer, path: path.clone(), identity: &identity, saved: Mutex::new(Instant::now()) };
         let outcome = expose(&&view, &mut film, &sampling.stop(), &keeper)?;

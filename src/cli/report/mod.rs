@@ -17,6 +17,7 @@ use welkin::scene::Scene;
 
 use super::Failure;
 use super::backend::{cache_folder, open_renderer};
+use super::limit::positive;
 use measure::Device;
 use progress::Progress;
 
@@ -46,10 +47,13 @@ pub struct Arguments {
     /// The dearest settings to measure [default: ultra, with --quick high]
     #[arg(long, value_name = "Q")]
     dearest: Option<Quality>,
-    /// Walks of the path tracer for each pixel of a reference; a sixteenth of it through clouds [default: 32768, with
+    /// Most walks of the path tracer for each pixel of a reference; a sixteenth of it through clouds [default: 32768, with
     /// --quick 4096]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(256..))]
     walks: Option<u64>,
+    /// Relative standard error of a reference (root mean square over its pixels) at which it needs no more walks, as in 0.01
+    #[arg(long, value_name = "E", value_parser = positive)]
+    truth_error: Option<f64>,
     /// Folder in which references are kept [default: the platform's for what can be made again]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
@@ -113,6 +117,7 @@ fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
         let clouds = SceneTraits::of(&scene).kind == SceneKind::Clouds;
         Case {
             walks: if clouds { walks / 16 } else { walks },
+            truth_error: arguments.truth_error,
             breadth: Breadth { dearest: Rung::of(dearest), vary: if random { &[] } else { vary } },
             solver_walks: if random { &[] } else { &[4, 16, 64] },
             scene,
