@@ -128,10 +128,11 @@ fn functions() -> Vec<Function> {
         },
         Function {
             name: "asinh, of the light's place in tables",
-            wgsl: "asinh(17.0 * x.z)",
+            wgsl: "asinh(34.0 * mapping::sun_height(x.z))",
             // Vulkan leaves asinh the error of ln(x + √(x² + 1)), whose sum is a difference where x < 0.
             host: |[_, _, mu, _]| {
-                let (x, value) = (17.0 * mu, (17.0 * mu).asinh());
+                let x = 34.0 * mu / (1.0 + (1.0 - mu).max(0.0).sqrt());
+                let value = x.asinh();
                 (value, value.abs() + 1.0 + (x.abs() / (x + (x * x + 1.0).sqrt())).min(1e4))
             },
             inputs: rays,

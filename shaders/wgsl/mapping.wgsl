@@ -44,18 +44,25 @@ fn optical_depth_to_unit(altitude_m: f32, mu: f32, radius_m: f32, top_m: f32) ->
     return sqrt(clamp(vec2<f32>(x2, altitude_m / top_m), vec2<f32>(0.0), vec2<f32>(1.0)));
 }
 
-// --- Multiple scattering: x = asinh(k mu_s) from its value at the lowest sun to that at the zenith, y = sqrt(h / top).
+// --- Multiple scattering: x = asinh(k s) from its value at the lowest sun to that at the zenith, y = sqrt(h / top).
 //
+// s = 1 - sqrt(1 - mu_s) is the sun's height: near the horizon half of mu_s, near the zenith what is left of a right angle. Around a sun
+// in the zenith light changes with the angle, of which mu_s has only the square.
 // sun_warp: k, which is the larger the sooner night falls on the planet; the value at the lowest sun; and the range from
 // there to the zenith's. The host's MultipleScatteringMapping has them.
 
+// 1 - sqrt(1 - mu_s), without a difference.
+fn sun_height(mu_s: f32) -> f32 {
+    return mu_s / (1.0 + sqrt(max(1.0 - mu_s, 0.0)));
+}
+
 fn multiple_scattering_from_unit(unit: vec2<f32>, top_m: f32, sun_warp: vec3<f32>) -> AltitudeCosine {
-    let mu_s = sinh(sun_warp.y + sun_warp.z * unit.x) / sun_warp.x;
-    return AltitudeCosine(top_m * unit.y * unit.y, clamp(mu_s, -1.0, 1.0));
+    let height = sinh(sun_warp.y + sun_warp.z * unit.x) / sun_warp.x;
+    return AltitudeCosine(top_m * unit.y * unit.y, clamp(height * (2.0 - height), -1.0, 1.0));
 }
 
 fn multiple_scattering_to_unit(altitude_m: f32, mu_s: f32, top_m: f32, sun_warp: vec3<f32>) -> vec2<f32> {
-    let x = (asinh(sun_warp.x * mu_s) - sun_warp.y) / sun_warp.z;
+    let x = (asinh(sun_warp.x * sun_height(mu_s)) - sun_warp.y) / sun_warp.z;
     return clamp(vec2<f32>(x, sqrt(max(altitude_m, 0.0) / top_m)), vec2<f32>(0.0), vec2<f32>(1.0));
 }
 

@@ -1,6 +1,7 @@
 //! Settings between the presets, so that a price between theirs can be paid.
 
 use std::fmt;
+use std::str::FromStr;
 
 use super::{CloudSettings, Directions, MultipleScattering, Quality, Settings, SourceGrid, Treatment, VolumeSettings};
 
@@ -50,6 +51,25 @@ impl Rung {
 
     fn below(self) -> Quality {
         Quality::ALL[((self.0 / PARTS) as usize).min(Quality::ALL.len() - 1)]
+    }
+}
+
+impl fmt::Display for Rung {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.name())
+    }
+}
+
+/// There is no rung of that name.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("quality is '{0}'; it must be one of {known}", known = Rung::ALL.map(Rung::name).join(", "))]
+pub struct UnknownRung(String);
+
+impl FromStr for Rung {
+    type Err = UnknownRung;
+
+    fn from_str(name: &str) -> Result<Self, UnknownRung> {
+        Self::from_name(name).ok_or_else(|| UnknownRung(name.to_owned()))
     }
 }
 
@@ -213,7 +233,8 @@ mod tests {
             );
             assert!(settings.degree_count * (settings.degree_count + 1) / 2 <= settings.directions.count());
         }
-        assert_eq!(Rung::from_name("medium+2/3"), None);
+        let unknown = "medium+2/3".parse::<Rung>().unwrap_err().to_string();
+        assert!(unknown.contains("medium+2/3") && unknown.contains("low+1/2, medium, medium+1/2"), "{unknown}");
         for step in LadderStep::all() {
             assert_eq!(LadderStep::from_name(&step.to_string()), Some(step));
         }

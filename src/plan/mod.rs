@@ -32,7 +32,7 @@ pub use constituent_groups::ConstituentGroups;
 pub use declaration::{Declaration, Fingerprint, Need};
 pub use facts::{Facts, Outputs, SpectralPart, Surface, Viewpoint};
 pub use froxel_grid::FroxelGrid;
-pub use ladder::{LadderStep, Rung};
+pub use ladder::{LadderStep, Rung, UnknownRung};
 pub use lag::elevation_slack_rad;
 pub use lattice::{lattice_cell, media_cell, media_froxels};
 pub use multiple_scattering::{MultipleScattering, Treatment, error_in_shadow, expected_ringing};

@@ -133,7 +133,15 @@ mod tests {
             pixels: 336,
         };
         let milliseconds = [("compose".to_owned(), 1.0 / 3.0)].into();
-        Entry { scene: "ab".into(), name: "low".into(), settings: "cd".into(), round, milliseconds, error }
+        Entry {
+            scene: "ab".into(),
+            name: "low".into(),
+            settings: "cd".into(),
+            round,
+            milliseconds,
+            error,
+            cells: Vec::new(),
+        }
     }
 
     #[test]

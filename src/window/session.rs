@@ -16,7 +16,7 @@ use super::settings::Settings as Kept;
 use super::shortcuts::Action;
 use crate::goal::Goal;
 use crate::gpu::ScreenEncoding;
-use crate::plan::{MultipleScattering, Quality, Settings, Skipping};
+use crate::plan::{MultipleScattering, Quality, Rung, Settings, Skipping};
 use crate::renderer::Timings;
 use crate::scene::{Scene, SceneError};
 
@@ -137,17 +137,11 @@ impl Session {
         self.resolution.touch(Instant::now());
     }
 
-    /// The options of `welkin render` that stand for the settings of pictures.
+    /// The options of `welkin render` that stand for the settings of pictures. Goals are not among them: on the command line they are
+    /// tried on the scene, which may lead to other settings than here.
     pub fn render_options(&self) -> String {
-        let met = self.chosen().is_some_and(|chosen| chosen.is_met);
-        match self.goal().filter(|_| met) {
-            Some(Goal::TargetError(error)) => return format!("--target-error {error}"),
-            Some(Goal::BudgetMs(milliseconds)) => return format!("--budget-ms {milliseconds}"),
-            None => {}
-        }
-        // Where a goal is not met the closest settings are presets.
         let step = self.chosen().and_then(|chosen| chosen.step);
-        let quality = step.and_then(|step| step.rung.quality()).unwrap_or(self.quality);
+        let quality = step.map_or(Rung::of(self.quality), |step| step.rung);
         match self.settings().multiple_scattering {
             MultipleScattering::Auto => format!("--quality {quality}"),
             method => format!("--quality {quality} --multiple-scattering {method}"),

@@ -6,12 +6,14 @@ use crate::Planet;
 /// reach beyond the horizon: on Earth 10.2°, so that the light comes down to -20° and half of the texels lie within 9°
 /// of the horizon, where twilight changes fastest.
 const LOWEST_MU_S_REACHES: f64 = 1.93;
-const SUN_WARP_REACHES: f64 = 3.0;
+const SUN_WARP_REACHES: f64 = 6.0;
 
 /// (altitude, cosine of the light's zenith angle) <-> unit coordinates.
 ///
-/// x grows as asinh(k μ_s), y = √(h / top). Night falls the sooner, the larger the planet is against its air: k and the
-/// lowest light follow the angle from the horizon at which the top of the air is seen (`Planet::reach_rad`).
+/// x grows as asinh(k s) with the light's height s = 1 - √(1 - μ_s), y = √(h / top). Near the horizon s is half of μ_s; near the zenith it
+/// goes with the angle from there, and so does light that is scattered forward, of which μ_s would have only the square. Night falls
+/// the sooner, the larger the planet is against its air: k and the lowest light follow the angle from the horizon at which the top
+/// of the air is seen (`Planet::reach_rad`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MultipleScatteringMapping {
     /// Altitude of the atmosphere's top, m.
@@ -33,25 +35,30 @@ impl MultipleScatteringMapping {
         }
     }
 
-    /// k, asinh(k μ_s) of the lowest light, and the range from there to the light at the zenith: what the shaders need.
+    /// k, asinh(k s) of the lowest light, and the range from there to the light at the zenith: what the shaders need.
     pub fn sun_warp(&self) -> [f64; 3] {
-        let low = (self.warp * self.lowest_mu_s).asinh();
+        let low = (self.warp * height(self.lowest_mu_s)).asinh();
         [self.warp, low, self.warp.asinh() - low]
     }
 
     /// (altitude in m, μ_s) at unit coordinates.
     pub fn parameters(&self, unit: [f64; 2]) -> [f64; 2] {
         let [warp, low, range] = self.sun_warp();
-        let mu_s = (low + range * unit[0]).sinh() / warp;
-        [self.top_m * unit[1] * unit[1], mu_s.clamp(-1.0, 1.0)]
+        let height = (low + range * unit[0]).sinh() / warp;
+        [self.top_m * unit[1] * unit[1], (height * (2.0 - height)).clamp(-1.0, 1.0)]
     }
 
     /// Unit coordinates of an altitude in m and a μ_s, clamped to the table.
     pub fn unit(&self, altitude_m: f64, mu_s: f64) -> [f64; 2] {
         let [warp, low, range] = self.sun_warp();
-        let x = ((warp * mu_s).asinh() - low) / range;
+        let x = ((warp * height(mu_s)).asinh() - low) / range;
         [x.clamp(0.0, 1.0), (altitude_m / self.top_m).clamp(0.0, 1.0).sqrt()]
     }
+}
+
+/// 1 - √(1 - μ_s), without a difference.
+fn height(mu_s: f64) -> f64 {
+    mu_s / (1.0 + (1.0 - mu_s).max(0.0).sqrt())
 }
 
 #[cfg(test)]
@@ -78,6 +85,9 @@ mod tests {
         assert!(lowest_deg(7e7) > -6.5);
         // Air as high as the planet is wide is lit all around.
         assert_eq!(lowest_deg(1e5), -90.0);
+        // Of 48 texels the two next to the zenith are no farther apart than light that is scattered forward is wide.
+        let [_, next] = mapping(6.36e6).parameters([46.0 / 47.0, 0.0]);
+        assert!(next.acos().to_degrees() < 13.0);
         // Half of the texels lie where the sun is low.
         let [_, middle] = mapping(6.36e6).parameters([0.5, 0.0]);
         assert!(middle.asin().to_degrees().abs() < 9.0);

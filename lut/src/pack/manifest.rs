@@ -13,7 +13,7 @@ use crate::sky_tables::SkyTables;
 use crate::{Bands, Planet};
 
 /// Version of the format that is written and read. It changes when something that a reader relies on does.
-pub const PACK_VERSION: u32 = 2;
+pub const PACK_VERSION: u32 = 3;
 
 /// What `format` says in every manifest.
 pub const PACK_FORMAT: &str = "welkin-pack";
@@ -91,7 +91,7 @@ pub struct SkyParameters {
     pub ground_albedo: Bands,
     /// Of the planet, m.
     pub radius_m: f64,
-    /// k, asinh(k sin(lowest sun)), and the range from there to asinh(k): how tables are spread over heights of the sun.
+    /// k, asinh(k s) of the lowest sun, and the range from there to asinh(k), s = 1 - sqrt(1 - mu_s): how tables are spread over heights of the sun.
     pub sun_warp: [f64; 3],
     /// Altitude of the air's top, m.
     pub top_m: f64,

@@ -35,7 +35,7 @@ pub(super) type Meaning = (&'static str, &'static str, &'static str, &'static [(
 const ALTITUDE: (&str, &str) = ("altitude h", "sqrt(h / top_m)");
 const SUN: (&str, &str) = (
     "cosine mu_s of the sun's zenith angle",
-    "(asinh(k mu_s) - low) / range with (k, low, range) = sky_parameters.sun_warp",
+    "(asinh(k s) - low) / range with s = 1 - sqrt(1 - mu_s), (k, low, range) = sky_parameters.sun_warp",
 );
 
 /// The words for a table of this name.

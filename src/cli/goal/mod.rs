@@ -76,11 +76,7 @@ impl GoalArguments {
         renderer: Option<&mut Renderer>,
     ) -> Result<Chosen, Failure> {
         let Some(goal) = self.goal() else {
-            return Ok(Chosen {
-                settings: accuracy.settings(),
-                name: accuracy.quality().name().to_owned(),
-                goal: None,
-            });
+            return Ok(Chosen { settings: accuracy.settings(), name: accuracy.quality().name(), goal: None });
         };
         let (front, traits) = (MeasuredFront::built_in(), SceneTraits::of(scene));
         let choice = match (goal, renderer) {
