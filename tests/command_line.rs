@@ -271,7 +271,7 @@ fn a_place_that_cannot_be_written_costs_no_rendering() {
         refused(SCENE, RAYS, &format!("render scene.toml -o {out}"), &[said]);
     }
     refused(SCENE, RAYS, "render scene.toml -o out.png --json no/out.json", &["no folder 'no'"]);
-    refused(SCENE, RAYS, "render scene.toml -o out.png --quality best", &["best", "low, low+1/2, medium"]);
+    refused(SCENE, RAYS, "render scene.toml -o out.png --quality best", &["best", "low, low+1/2, low+3/4, medium"]);
 }
 
 /// Renders the scene to a PNG and an EXR file and says by how many of 255 steps the two differ at most, once the EXR

@@ -10,6 +10,9 @@ use crate::plan::{LadderStep, Quality, Rung, Treatment};
 /// What the finest picture's own error may be of the target, where there is a finer one.
 const FINEST_SHARE: f64 = 0.5;
 
+/// By how much errors are taken to be larger than they are found: the estimate is off by about as much, both ways.
+const MARGIN: f64 = 1.1;
+
 /// How many times its target the error of a picture is where that of the next finer one is not worth finding out: a quality up has
 /// halved errors, and hardly ever brought more than a factor of ten.
 const HOPELESS: f64 = 30.0;
@@ -40,13 +43,14 @@ pub fn search<E>(
     mut distance: impl FnMut(LadderStep, LadderStep) -> Result<f64, E>,
 ) -> Result<Choice, SearchError<E>> {
     let (finest, own) = finest(target, dearest, &mut distance).map_err(SearchError::Picture)?;
+    let own = MARGIN * own;
     let choice = |step, error| Choice { step, error: Some(error), milliseconds: None };
     // Nothing that is held against a picture is known better than that.
     if own > target {
         return Err(SearchError::Goal(GoalError::TooClose { target, closest: choice(finest, own) }));
     }
     for step in by_price(dearest, price).into_iter().take_while(|step| *step != finest) {
-        let error = own.hypot(distance(step, finest).map_err(SearchError::Picture)?);
+        let error = own.hypot(MARGIN * distance(step, finest).map_err(SearchError::Picture)?);
         if error <= target {
             return Ok(choice(step, error));
         }

@@ -13,9 +13,9 @@ const PARTS: u32 = 4;
 pub struct Rung(u32);
 
 impl Rung {
-    /// From the cheapest to the dearest. They stand closer where presets differ more in price.
-    pub const ALL: [Self; 10] =
-        [Self(0), Self(2), Self(4), Self(6), Self(7), Self(8), Self(9), Self(10), Self(11), Self(12)];
+    /// From the cheapest to the dearest, no two of them much more than half as dear again as each other.
+    pub const ALL: [Self; 12] =
+        [Self(0), Self(2), Self(3), Self(4), Self(5), Self(6), Self(7), Self(8), Self(9), Self(10), Self(11), Self(12)];
 
     /// The preset's.
     pub fn of(quality: Quality) -> Self {
@@ -234,7 +234,10 @@ mod tests {
             assert!(settings.degree_count * (settings.degree_count + 1) / 2 <= settings.directions.count());
         }
         let unknown = "medium+2/3".parse::<Rung>().unwrap_err().to_string();
-        assert!(unknown.contains("medium+2/3") && unknown.contains("low+1/2, medium, medium+1/2"), "{unknown}");
+        assert!(
+            unknown.contains("medium+2/3") && unknown.contains("low+1/2, low+3/4, medium, medium+1/4"),
+            "{unknown}"
+        );
         for step in LadderStep::all() {
             assert_eq!(LadderStep::from_name(&step.to_string()), Some(step));
         }

@@ -146,7 +146,7 @@ mod tests {
         Scene::parse(&text, "candidates.toml".as_ref()).unwrap()
     }
 
-    const ALL: Breadth = Breadth { dearest: Rung::ALL[9], vary: &[Quality::Medium] };
+    const ALL: Breadth = Breadth { dearest: Rung::ALL[11], vary: &[Quality::Medium] };
 
     #[test]
     fn every_preset_is_measured_once_and_no_settings_twice() {
