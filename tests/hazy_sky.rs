@@ -49,7 +49,7 @@ fn errors(renderer: &mut Renderer, name: &str, settings: Settings, suns: RangeIn
 }
 
 /// Median and 99th percentile, %.
-const HIGH_SUN_BOUNDS: [f64; 2] = [1.5, 5.0];
+const HIGH_SUN_BOUNDS: [f64; 2] = [1.0, 3.5];
 
 fn quantile(errors: &[f64], q: f64) -> f64 {
     errors[((errors.len() - 1) as f64 * q).round() as usize]
