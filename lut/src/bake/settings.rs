@@ -51,7 +51,7 @@ impl BakeSettings {
         source_size: [40, 20],
         source_grid: SourceGrid { ground: 4, low: 5, high: 5, azimuths: 8 },
         orders: 4,
-        scattering: ScatteringSize { azimuths: 8, suns: 48, elevations: 32, altitudes: 20 },
+        scattering: ScatteringSize { azimuths: 8, suns: 64, elevations: 32, altitudes: 20 },
     };
     /// 44 MB.
     pub const HIGH: Self = Self {
