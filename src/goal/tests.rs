@@ -114,7 +114,7 @@ fn a_search_on_the_scene_finds_the_cheapest_that_meets_the_target_and_renders_no
     for (target, expected, needs) in [
         (0.08, "low harmonics", Quality::Medium),
         (0.03, "low source-function", Quality::Medium),
-        (0.012, "medium source-function", Quality::High),
+        (0.012, "low+3/4 source-function", Quality::High),
     ] {
         let mut asked = Vec::new();
         let choice = search(target, Rung::of(Quality::Ultra), price, |step, finest| {

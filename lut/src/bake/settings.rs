@@ -44,7 +44,7 @@ impl BakeSettings {
         orders: 4,
         scattering: ScatteringSize { azimuths: 5, suns: 40, elevations: 24, altitudes: 12 },
     };
-    /// The default: 12 MB.
+    /// The default: 16 MB.
     pub const MEDIUM: Self = Self {
         nodes_per_leg: 10,
         optical_depth_size: [256, 64],
