@@ -249,6 +249,8 @@ impl Gpu {
     /// [`GpuError::Size`] unless the image has a whole number of elements; [`GpuError::Recording`];
     /// [`GpuError::Resource`] when nothing has been written to it.
     pub fn read_image<T: AnyBitPattern + NoUninit>(&self, image: &GpuImage) -> Result<Vec<T>, GpuError> {
+        // Before the device copies what then does not fit.
+        element_count::<T>(image.name(), image.bytes())?;
         self.start_reading_image(image)?.wait()
     }
 
@@ -281,9 +283,14 @@ impl Gpu {
 
 /// As many zeroed elements as fill so many bytes.
 fn elements<T: AnyBitPattern>(name: &str, bytes: u64) -> Result<Vec<T>, GpuError> {
+    Ok(vec![T::zeroed(); element_count::<T>(name, bytes)?])
+}
+
+/// How many elements fill so many bytes.
+fn element_count<T>(name: &str, bytes: u64) -> Result<usize, GpuError> {
     let size = size_of::<T>() as u64;
     if size == 0 || !bytes.is_multiple_of(size) {
         return Err(GpuError::Size { name: name.to_owned(), expected: bytes, found: size });
     }
-    Ok(vec![T::zeroed(); (bytes / size) as usize])
+    Ok((bytes / size) as usize)
 }
