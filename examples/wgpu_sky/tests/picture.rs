@@ -15,7 +15,7 @@ const ELEVATION_DEG: f32 = 11.5;
 const BOUND: f64 = 0.02;
 /// Suns below the horizon with theirs, beside a texel of the pack's sun and between two of them: twilight changes so fast that what
 /// lies between shows.
-const TWILIGHT: [(f64, f64); 3] = [(-3.0, 0.04), (-3.6, 0.04), (-4.0, 0.04)];
+const TWILIGHT: [(f32, f64); 3] = [(-3.0, 0.04), (-3.6, 0.04), (-4.0, 0.04)];
 
 /// The command, where Cargo puts it.
 fn welkin(arguments: &[&str]) -> serde_json::Value {
