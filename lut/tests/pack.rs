@@ -91,10 +91,10 @@ fn what_is_missing_cut_short_of_another_version_or_a_stranger_is_said() {
     assert!(matches!(&refused, PackError::Size { found: 1000, .. }), "{refused}");
     let version = |bytes: &mut Vec<u8>| {
         let text = String::from_utf8(bytes.clone()).unwrap();
-        *bytes = text.replacen("\"version\": 2", "\"version\": 3", 1).into_bytes();
+        *bytes = text.replacen("\"version\": 3", "\"version\": 4", 1).into_bytes();
     };
     let refused = with_changed(&place.join("manifest.json"), version, &place);
-    assert!(matches!(refused, PackError::Version { found: 3, known: 2, .. }), "{refused}");
+    assert!(matches!(refused, PackError::Version { found: 4, known: 3, .. }), "{refused}");
     let outside = |bytes: &mut Vec<u8>| {
         let text = String::from_utf8(bytes.clone()).unwrap();
         *bytes = text.replacen("irradiance.f16.ktx2", "../irradiance.ktx2!", 1).into_bytes();
