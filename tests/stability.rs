@@ -125,6 +125,16 @@ fn planted_bugs_are_caught_by_name() {
             "transmittance is",
         ),
         (
+            "a peak taken to lie ahead",
+            with_bug(
+                "convolution.wgsl",
+                "let is_thrown_back = !quadratic && peak_side(c) < 0.0;",
+                "let is_thrown_back = false;",
+            ),
+            "haze, g = -0.9999",
+            "radiance is",
+        ),
+        (
             "columns that no invocation writes",
             with_bug("emission_order.wgsl", "column <= ZONAL_COUNT;", "column < min(COSINE_COUNT, ZONAL_COUNT + 1u);"),
             "air that glows, seven directions",

@@ -31,7 +31,7 @@ pub enum SearchError<E> {
 
 /// The cheapest settings up to `dearest` whose error on a scene is found to be within a target.
 ///
-/// `price` orders the steps; those without one come last. `distance` renders the scene at two steps, and tells how far the first
+/// `price` orders the steps; infinite where it is not known. `distance` renders the scene at two steps, and tells how far the first
 /// picture is from the second: root of the mean squared relative difference of radiance.
 ///
 /// # Errors
@@ -39,7 +39,7 @@ pub enum SearchError<E> {
 pub fn search<E>(
     target: f64,
     dearest: Rung,
-    price: impl Fn(LadderStep) -> Option<f64>,
+    price: impl Fn(LadderStep) -> f64,
     mut distance: impl FnMut(LadderStep, LadderStep) -> Result<f64, E>,
 ) -> Result<Choice, SearchError<E>> {
     let (finest, own) = finest(target, dearest, &mut distance).map_err(SearchError::Picture)?;
@@ -60,7 +60,7 @@ pub fn search<E>(
 
 /// The steps worth trying, from the cheapest. Harmonics are not on the dear rungs: the source function's cheapest costs less than
 /// they do there, and is closer.
-fn by_price(dearest: Rung, price: impl Fn(LadderStep) -> Option<f64>) -> Vec<LadderStep> {
+fn by_price(dearest: Rung, price: impl Fn(LadderStep) -> f64) -> Vec<LadderStep> {
     let dearest_of = |treatment| match treatment {
         Treatment::IsotropicSeries => None,
         Treatment::Harmonics => Some(dearest.min(Rung::of(Quality::High))),
@@ -68,8 +68,7 @@ fn by_price(dearest: Rung, price: impl Fn(LadderStep) -> Option<f64>) -> Vec<Lad
     };
     let mut steps = LadderStep::all();
     steps.retain(|step| dearest_of(step.treatment).is_some_and(|dearest| step.rung <= dearest));
-    let price = |step: &LadderStep| price(*step).unwrap_or(f64::INFINITY);
-    steps.sort_by(|a, b| price(a).total_cmp(&price(b)));
+    steps.sort_by(|a, b| price(*a).total_cmp(&price(*b)));
     steps
 }
 

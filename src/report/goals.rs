@@ -128,7 +128,7 @@ fn found(front: &MeasuredFront, scene: &SceneResults, target: f64) -> Option<Cho
     front.scenes.retain(|other| other.name != scene.scene);
     let picture = |step: LadderStep| scene.pictures.get(&step.to_string());
     let dearest = scene.pictures.keys().filter_map(|name| LadderStep::from_name(name)).map(|step| step.rung).max()?;
-    let price = |step| Some(front.milliseconds(scene.traits.kind, step));
+    let price = |step| front.milliseconds(scene.traits.kind, step);
     let apart = |step, finest| {
         let (ours, other) = picture(step).zip(picture(finest)).ok_or(())?;
         distance(ours, other, scene.channels, &vec![false; ours.len()]).ok_or(())

@@ -30,7 +30,7 @@ pub fn found_on_scene(
     let known: BTreeMap<String, f64> = kept.read().unwrap_or_default();
     let mut trial = Trial { grid: SampleGrid::new(scene), renderer, pictures: BTreeMap::new(), known };
     let before = trial.known.len();
-    let price = |step: LadderStep| Some(front.milliseconds(kind, step));
+    let price = |step| front.milliseconds(kind, step);
     let found = search(target, dearest(), price, |step, finest| trial.distance(step, finest));
     if trial.known.len() > before {
         kept.write(&trial.known);
