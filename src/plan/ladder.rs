@@ -13,7 +13,7 @@ const PARTS: u32 = 4;
 pub struct Rung(u32);
 
 impl Rung {
-    /// From the cheapest to the dearest, no two of them much more than half as dear again as each other.
+    /// From the cheapest to the dearest. They stand closer where presets differ more in price.
     pub const ALL: [Self; 12] =
         [Self(0), Self(2), Self(3), Self(4), Self(5), Self(6), Self(7), Self(8), Self(9), Self(10), Self(11), Self(12)];
 
