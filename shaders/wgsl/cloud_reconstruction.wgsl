@@ -10,9 +10,10 @@
 //   place     of a pixel or between pixels, from the picture's top left corner
 //
 // Definitions: CLOUD_BLOCK; CAPTURE (distances are asked for); WHOLE_BLOCKS (an invocation follows all pixels around a sample and not
-// one of their columns: what the samples around have in common is read once, for devices of few invocations).
+// one of their columns: what the samples around have in common is read once, for devices of few invocations); FILTERED (the device
+// interpolates 32-bit floats).
 
-#import welkin::camera::{camera, view_direction}
+#import welkin::camera::{camera, view_through}
 #import welkin::cloud_field::{cloud_layers, CLOUD_LAYER_COUNT}
 #import welkin::cloud_frame::cloud_frame
 #import welkin::observer::observer
@@ -24,9 +25,11 @@
 @group(0) @binding(4) var cloud_radiance_history: texture_2d<f32>;
 @group(0) @binding(5) var cloud_air_history: texture_2d<f32>;
 @group(0) @binding(6) var cloud_diffuse_history: texture_2d<f32>;
-@group(0) @binding(7) var cloud_radiance_image: texture_storage_2d<rgba32float, write>;
-@group(0) @binding(8) var cloud_air_image: texture_storage_2d<rgba32float, write>;
-@group(0) @binding(9) var cloud_diffuse_image: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(7) var table_sampler: sampler;
+// Shares of other light, from 0 to 1, lose nothing that shows as half floats.
+@group(0) @binding(8) var cloud_radiance_image: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(9) var cloud_air_image: texture_storage_2d<rgba16float, write>;
+@group(0) @binding(12) var cloud_diffuse_image: texture_storage_2d<rgba16float, write>;
 #ifdef CAPTURE
 @group(0) @binding(11) var cloud_distance_image: texture_storage_2d<r32float, write>;
 #endif
@@ -44,6 +47,8 @@ const GROUP_SIZE = vec2<u32>(32u, 2u);
 const NEW_SHARE: f32 = 0.7;
 // Where there is no cloud, the point that is followed is as good as infinitely far, m.
 const FAR_M: f32 = 1e7;
+// A place that no picture has, nor any place between it and one in a picture but those within a pixel of that.
+const UNSEEN = vec2<f32>(-1e9);
 
 // The three images of the clouds at a pixel.
 struct Texels {
@@ -64,22 +69,28 @@ fn sample_at(index: vec2<i32>) -> Texels {
     );
 }
 
-fn history_at(index: vec2<i32>) -> Texels {
+#ifndef FILTERED
+fn radiance_before(index: vec2<i32>) -> vec4<f32> {
     let i = clamp(index, vec2<i32>(0), vec2<i32>(textureDimensions(cloud_radiance_history)) - 1);
-    return Texels(
-        textureLoad(cloud_radiance_history, i, 0), textureLoad(cloud_air_history, i, 0),
-        textureLoad(cloud_diffuse_history, i, 0),
-    );
+    return textureLoad(cloud_radiance_history, i, 0);
 }
+#endif
 
-// Between four pixels. Written out: not every device interpolates 32-bit floats.
+// Between four pixels.
 fn interpolated_history(place: vec2<f32>) -> Texels {
+    let uv = place / camera.size;
+#ifdef FILTERED
+    let radiance = textureSampleLevel(cloud_radiance_history, table_sampler, uv, 0.0);
+#else
     let low = floor(place - 0.5);
     let share = place - 0.5 - low;
     let i = vec2<i32>(low);
-    let upper = mixed(history_at(i), history_at(i + vec2<i32>(1, 0)), share.x);
-    let lower = mixed(history_at(i + vec2<i32>(0, 1)), history_at(i + vec2<i32>(1, 1)), share.x);
-    return mixed(upper, lower, share.y);
+    let upper = mix(radiance_before(i), radiance_before(i + vec2<i32>(1, 0)), share.x);
+    let lower = mix(radiance_before(i + vec2<i32>(0, 1)), radiance_before(i + vec2<i32>(1, 1)), share.x);
+    let radiance = mix(upper, lower, share.y);
+#endif
+    let air = textureSampleLevel(cloud_air_history, table_sampler, uv, 0.0);
+    return Texels(radiance, air, textureSampleLevel(cloud_diffuse_history, table_sampler, uv, 0.0));
 }
 
 fn interpolated_samples(pixel: vec2<i32>) -> Texels {
@@ -130,22 +141,41 @@ fn drift_m(altitude_m: f32) -> vec2<f32> {
     return vec2<f32>(0.0);
 }
 
-// Where the frame before saw the clouds of a view direction; beside the picture where it did not.
-fn place_before(view: vec3<f32>, distance_m: f32) -> vec2<f32> {
-    let point = vec3<f32>(0.0, 0.0, observer.altitude_m) + view * distance_m;
+// Where the frame before saw the clouds at a distance behind a place of this one.
+fn place_before(place: vec2<f32>, distance_m: f32) -> vec2<f32> {
+    let point = vec3<f32>(0.0, 0.0, observer.altitude_m) + view_through(place) * distance_m;
     let then = point - vec3<f32>(drift_m(point.z), cloud_frame.altitude_m);
     let ahead = dot(then, cloud_frame.forward);
     if ahead <= 0.0 {
-        return vec2<f32>(-1.0);
+        return UNSEEN;
     }
     let x = dot(then, cloud_frame.right) / (ahead * cloud_frame.half_width);
     let y = dot(then, cloud_frame.up) / (ahead * cloud_frame.half_height);
     return 0.5 * (vec2<f32>(x, -y) + 1.0) * camera.size;
 }
 
-// A pixel with the sample nearest to it, and what the samples around that one have in common.
-fn follow(pixel: vec2<i32>, nearest: vec2<i32>, bounds: ptr<function, Around>) {
-    let place = place_before(view_direction(vec2<u32>(pixel)), (*bounds).distance_m);
+// The same within a block, in which it is as good as linear: of the centre of its first pixel, and what a pixel to the right and one
+// down add to it.
+struct Flow {
+    first: vec2<f32>,
+    right: vec2<f32>,
+    down: vec2<f32>,
+}
+
+fn flow(first: vec2<i32>, distance_m: f32) -> Flow {
+    let centre = vec2<f32>(first) + 0.5;
+    let before = place_before(centre, distance_m);
+    let down = (place_before(centre + vec2<f32>(0.0, f32(BLOCK)), distance_m) - before) / f32(BLOCK);
+#ifdef WHOLE_BLOCKS
+    let right = (place_before(centre + vec2<f32>(f32(COLUMNS), 0.0), distance_m) - before) / f32(COLUMNS);
+#else
+    let right = vec2<f32>(0.0);
+#endif
+    return Flow(before, right, down);
+}
+
+// A pixel that was seen at a place before, with the sample nearest to it, and what the samples around that one have in common.
+fn follow(pixel: vec2<i32>, place: vec2<f32>, nearest: vec2<i32>, bounds: ptr<function, Around>) {
     let was_seen = all(place >= vec2<f32>(0.0)) && all(place <= camera.size);
     var texels: Texels;
     if was_seen {
@@ -181,10 +211,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let middle = first + vec2<i32>(COLUMNS, BLOCK) / 2 - vec2<i32>(cloud_frame.first_pixel);
     let nearest = vec2<i32>(floor(vec2<f32>(middle) / f32(BLOCK) + 0.5));
     var bounds = around(nearest);
+    let before = flow(first, bounds.distance_m);
     let end = min(first + vec2<i32>(COLUMNS, BLOCK), size);
     for (var y = max(first.y, 0); y < end.y; y++) {
         for (var x = max(first.x, 0); x < end.x; x++) {
-            follow(vec2<i32>(x, y), nearest, &bounds);
+            let within = vec2<f32>(vec2<i32>(x, y) - first);
+            let place = before.first + within.x * before.right + within.y * before.down;
+            follow(vec2<i32>(x, y), place, nearest, &bounds);
         }
     }
 }

@@ -7,9 +7,10 @@
 // One pixel of every block of CLOUD_BLOCK x CLOUD_BLOCK is marched, another one each frame; the ray ends at a surface that
 // stands before the camera.
 //
-// Definitions: CLOUD_DISTANCE (also write distances); CLOUD_BLOCK; CLOUD_MAX_STEPS; CLOUD_STEP_M, the shortest step; CLOUD_STEP_PERMILLE, a step's share of the distance.
+// Definitions: CLOUD_DISTANCE (also write distances); FOLLOWED_CLOUDS (what they leave of other light is kept in half floats); CLOUD_BLOCK; CLOUD_MAX_STEPS; CLOUD_STEP_M, the shortest step; CLOUD_STEP_PERMILLE, a step's share of the distance.
 
 #import welkin::atmosphere::atmosphere
+#import welkin::attenuation::opacity
 #import welkin::cloud_field::{to_map, CLOUD_LAYER_SLOTS}
 #import welkin::cloud_frame::cloud_frame
 #import welkin::cloud_source::{phases, PHASE_COUNT}
@@ -23,11 +24,16 @@
 
 // Light of the clouds at the observer, and their transmittance.
 @group(1) @binding(10) var cloud_radiance_image: texture_storage_2d<rgba32float, write>;
-// int T S dT_air to the end of the ray and T T_air there, from which what is left of the air's light follows: S is what
-// clouds leave of the light that the air scatters, of the sun's beam and, in the second image, of diffuse light. Then what
-// they leave on the ground there, of the beam and of the sky.
+// int T S dT_air to the end of the ray over int dT_air, the share that is left of the air's light: S is what clouds leave of
+// the light that the air scatters, of the sun's beam and, in the second image, of diffuse light. Then what they leave on the
+// ground there, of the beam and of the sky.
+#ifdef FOLLOWED_CLOUDS
+@group(1) @binding(11) var cloud_air_image: texture_storage_2d<rgba16float, write>;
+@group(1) @binding(12) var cloud_diffuse_image: texture_storage_2d<rgba16float, write>;
+#else
 @group(1) @binding(11) var cloud_air_image: texture_storage_2d<rgba32float, write>;
 @group(1) @binding(12) var cloud_diffuse_image: texture_storage_2d<rgba32float, write>;
+#endif
 
 #ifdef CLOUD_DISTANCE
 // Mean distance of the clouds, weighted with what they hide.
@@ -42,6 +48,8 @@ const STEP_M: f32 = #{CLOUD_STEP_M}.0;
 const SMOOTH_DEPTH: f32 = 2.0;
 // Steps after which what lies beside is waited for.
 const LOOKS: u32 = 16u;
+// Air of a smaller optical depth sends nothing.
+const CLEAR_DEPTH: f32 = 1e-9;
 const STEP_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
 
 struct Sum {
@@ -149,6 +157,12 @@ fn add_light(
     (*sum).clouds += within;
 }
 
+// Of air that does nothing all is left.
+fn share_of_air(left: vec3<f32>, depth: vec3<f32>) -> vec3<f32> {
+    let is_clear = depth < vec3<f32>(CLEAR_DEPTH);
+    return select(left / opacity(select(depth, vec3<f32>(1.0), is_clear)), vec3<f32>(1.0), is_clear);
+}
+
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= textureDimensions(cloud_radiance_image)) {
@@ -190,7 +204,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     textureStore(cloud_distance_image, id.xy, vec4<f32>(mean_m, 0.0, 0.0, 0.0));
 #endif
     textureStore(cloud_radiance_image, id.xy, vec4<f32>(sum.radiance, transmittance));
-    let behind = transmittance * exp(-air.depth);
-    textureStore(cloud_air_image, id.xy, vec4<f32>(air.beam + behind, ground.x));
-    textureStore(cloud_diffuse_image, id.xy, vec4<f32>(air.diffuse + behind, ground.y));
+    textureStore(cloud_air_image, id.xy, vec4<f32>(share_of_air(air.beam, air.depth), ground.x));
+    textureStore(cloud_diffuse_image, id.xy, vec4<f32>(share_of_air(air.diffuse, air.depth), ground.y));
 }

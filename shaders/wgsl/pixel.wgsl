@@ -68,8 +68,7 @@ fn overlay(pixel: vec2<u32>, behind: vec3<f32>) -> Overlay {
     let clouds = textureLoad(cloud_radiance_image, pixel, 0);
     let beam = textureLoad(cloud_air_image, pixel, 0);
     let diffuse = textureLoad(cloud_diffuse_image, pixel, 0);
-    let air = shares_before(beam.rgb, diffuse.rgb, vec3<f32>(clouds.a), behind);
-    return Overlay(clouds.rgb, vec3<f32>(clouds.a), air, Shares(vec3<f32>(beam.a), vec3<f32>(diffuse.a)));
+    return Overlay(clouds.rgb, vec3<f32>(clouds.a), Shares(beam.rgb, diffuse.rgb), Shares(vec3<f32>(beam.a), vec3<f32>(diffuse.a)));
 #else
     return Overlay(vec3<f32>(0.0), vec3<f32>(1.0), ALL, ALL);
 #endif

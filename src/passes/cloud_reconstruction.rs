@@ -1,16 +1,16 @@
 //! Clouds of every pixel, where a frame of a sequence marches only some.
 
 use super::{Pass, Recording, RenderError, clouds};
-use crate::gpu::{DeviceKind, ImageFormat, Work};
+use crate::gpu::{DeviceKind, Filtering, ImageFormat, Work};
 use crate::plan::{Declaration, Facts, Fingerprint, Need};
 
 const NAME: &str = "cloud_reconstruction";
 
 /// What is reconstructed, by the names of the frame before and of this one.
-const IMAGES: [[&str; 2]; 3] = [
-    ["cloud_radiance_history", "cloud_radiance_image"],
-    ["cloud_air_history", "cloud_air_image"],
-    ["cloud_diffuse_history", "cloud_diffuse_image"],
+const IMAGES: [([&str; 2], ImageFormat); 3] = [
+    (["cloud_radiance_history", "cloud_radiance_image"], ImageFormat::Rgba32Float),
+    (["cloud_air_history", "cloud_air_image"], ImageFormat::Rgba16Float),
+    (["cloud_diffuse_history", "cloud_diffuse_image"], ImageFormat::Rgba16Float),
 ];
 
 /// The pass.
@@ -30,7 +30,7 @@ pub const PASS: Pass = Pass {
         ],
         inputs: |facts| Fingerprint::of(&facts.sequence),
         bytes: |facts| {
-            let images = 2 * IMAGES.len() as u64 * ImageFormat::Rgba32Float.texel_bytes();
+            let images: u64 = IMAGES.iter().map(|(_, format)| 2 * format.texel_bytes()).sum();
             let distance = if facts.outputs.capture { ImageFormat::R32Float.texel_bytes() } else { 0 };
             clouds::whole_shape(facts).texels() * (images + distance)
         },
@@ -48,11 +48,11 @@ fn need(facts: &Facts) -> Need {
 
 fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = clouds::whole_shape(recording.facts);
-    for [history, image] in IMAGES {
+    for ([history, image], format) in IMAGES {
         // The frame before becomes history, and what was history is written over.
         recording.resources.exchange(history, image);
-        recording.resources.image(history, shape, ImageFormat::Rgba32Float)?;
-        recording.resources.image(image, shape, ImageFormat::Rgba32Float)?;
+        recording.resources.image(history, shape, format)?;
+        recording.resources.image(image, shape, format)?;
     }
     if recording.facts.outputs.capture {
         recording.resources.image("cloud_distance_image", shape, ImageFormat::R32Float)?;
@@ -61,9 +61,12 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     // neighbours that write side by side.
     let block = recording.facts.cloud_block();
     let whole_blocks = recording.resources.gpu.info().kind == DeviceKind::Cpu;
-    let (columns, flags): (_, &[&str]) = if whole_blocks { (block, &["WHOLE_BLOCKS"]) } else { (1, &[]) };
+    let columns = if whole_blocks { block } else { 1 };
+    let filtered = recording.resources.gpu.filtering(ImageFormat::Rgba32Float) == Filtering::Linear;
+    let flags = [("WHOLE_BLOCKS", whole_blocks), ("FILTERED", filtered)];
+    let flags: Vec<_> = flags.into_iter().filter_map(|(flag, is_set)| is_set.then_some(flag)).collect();
     let [width, height, _] = shape.extent();
     // Half a block lies beyond the outermost samples at each end, wherever in their blocks they are.
     let [across, down] = [(width + 2 * block).div_ceil(columns), (height + 2 * block).div_ceil(block)];
-    recording.dispatch(NAME, flags, &[], Work::Invocations([across, down, 1]))
+    recording.dispatch(NAME, &flags, &[], Work::Invocations([across, down, 1]))
 }

@@ -25,12 +25,14 @@ pub const PASS: Pass = Pass {
                 settings,
                 facts.surface,
                 facts.keeps_cloud_distance(),
+                facts.follows_clouds(),
                 facts.sequence.filter(|_| facts.cloud_block() > 1),
             ))
         },
         bytes: |facts| {
             let distance = if facts.keeps_cloud_distance() { ImageFormat::R32Float.texel_bytes() } else { 0 };
-            marched_shape(facts).texels() * (3 * ImageFormat::Rgba32Float.texel_bytes() + distance)
+            marched_shape(facts).texels()
+                * (images(facts).iter().map(|(_, format)| format.texel_bytes()).sum::<u64>() + distance)
         },
     },
     record,
@@ -53,12 +55,16 @@ pub(super) const MARCH_READS: [&str; 10] = [
 /// The same up to hills.
 const READS: [&str; 11] = joined(MARCH_READS, ["terrain_image"]);
 
-/// What is marched into: by the names of whole pictures, and of those of which a frame marches some pixels.
-const IMAGES: [[&str; 2]; 3] = [
-    ["cloud_radiance_image", "cloud_radiance_samples"],
-    ["cloud_air_image", "cloud_air_samples"],
-    ["cloud_diffuse_image", "cloud_diffuse_samples"],
-];
+/// What is marched into, and its format: by the names of whole pictures, and of those of which a frame marches some pixels. What
+/// clouds leave of other light are shares of it: half floats hold them well enough for frames that go by.
+fn images(facts: &Facts) -> [([&'static str; 2], ImageFormat); 3] {
+    let shares = if facts.follows_clouds() { ImageFormat::Rgba16Float } else { ImageFormat::Rgba32Float };
+    [
+        (["cloud_radiance_image", "cloud_radiance_samples"], ImageFormat::Rgba32Float),
+        (["cloud_air_image", "cloud_air_samples"], shares),
+        (["cloud_diffuse_image", "cloud_diffuse_samples"], shares),
+    ]
+}
 const DISTANCE: [&str; 2] = ["cloud_distance_image", "cloud_distance_samples"];
 
 /// All pixels of the picture.
@@ -126,18 +132,20 @@ fn record(recording: &mut Recording) -> Result<(), RenderError> {
     let shape = marched_shape(facts);
     let is_whole = facts.cloud_block() == 1;
     let name = |[image, samples]: [&'static str; 2]| if is_whole { image } else { samples };
-    let mut images = Vec::new();
-    for names in IMAGES {
-        images.push((names[0], recording.resources.image(name(names), shape, ImageFormat::Rgba32Float)?));
+    let images = images(facts);
+    let mut written = Vec::new();
+    for (names, format) in images {
+        written.push((names[0], recording.resources.image(name(names), shape, format)?));
     }
     if facts.keeps_cloud_distance() {
-        images.push((DISTANCE[0], recording.resources.image(name(DISTANCE), shape, ImageFormat::R32Float)?));
+        written.push((DISTANCE[0], recording.resources.image(name(DISTANCE), shape, ImageFormat::R32Float)?));
     }
     if is_whole {
-        IMAGES.iter().chain([&DISTANCE]).for_each(|[_, samples]| recording.resources.release(samples));
+        let names = images.iter().map(|(names, _)| names).chain([&DISTANCE]);
+        names.for_each(|[_, samples]| recording.resources.release(samples));
     }
     let surface = recording.surface();
-    images.extend(surface.map(|surface| ("surface_image", surface)));
-    let bound: Vec<_> = images.iter().map(|(name, image)| (*name, image)).collect();
+    written.extend(surface.map(|surface| ("surface_image", surface)));
+    let bound: Vec<_> = written.iter().map(|(name, image)| (*name, image)).collect();
     recording.dispatch(NAME, &[], &bound, Work::Invocations(shape.extent()))
 }

@@ -101,6 +101,7 @@ pub fn definitions(facts: &Facts) -> Definitions {
         ("GROUND", facts.orders == Orders::All),
         ("MULTIPLE_SCATTERING", facts.has_multiple_scattering()),
         ("CLOUDS", !facts.clouds.is_empty()),
+        ("FOLLOWED_CLOUDS", facts.follows_clouds()),
         ("CLOUD_DISTANCE", facts.keeps_cloud_distance()),
         ("CLOUD_ORDINATES", facts.ordinate_groups() > 0),
         ("CLOUD_ANVIL", facts.clouds.iter().any(|layer| layer.kind == CloudKind::Cumulonimbus)),

@@ -216,13 +216,17 @@ impl<'a> Facts<'a> {
         Self { for_screen: self.part.is_none() && !self.outputs.capture, ..self }
     }
 
-    /// Side of the blocks of pixels of which one is marched through the clouds; 1 where all are. What the frame before has
-    /// seen past the edge of a hill cannot be followed: before surfaces, and among local media, all are.
+    /// Whether frames of this sequence follow clouds, after the first. What the frame before has seen past the edge of a hill
+    /// cannot be followed: before surfaces, and among local media, all pixels are marched.
+    pub fn follows_clouds(&self) -> bool {
+        let has_others = self.surface.is_some() || self.has_local_media();
+        self.sequence.is_some() && self.settings.clouds.block > 1 && !has_others
+    }
+
+    /// Side of the blocks of pixels of which one is marched through the clouds; 1 where all are.
     pub fn cloud_block(&self) -> u32 {
         match self.sequence {
-            Some(Sequence { before: Some(_), .. }) if self.surface.is_none() && !self.has_local_media() => {
-                self.settings.clouds.block
-            }
+            Some(Sequence { before: Some(_), .. }) if self.follows_clouds() => self.settings.clouds.block,
             _ => 1,
         }
     }
