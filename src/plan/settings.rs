@@ -166,7 +166,7 @@ impl Settings {
     pub fn of(quality: Quality) -> Self {
         match quality {
             Quality::Low => Self {
-                nodes_per_leg: 8,
+                nodes_per_leg: 10,
                 quadrature: Quadrature::GaussLegendre,
                 optical_depth_panels: 64,
                 table_format: TableFormat::Float32,
@@ -179,7 +179,7 @@ impl Settings {
                 ringing_limit: 0.015,
                 shadow_limit: 0.4,
                 source_grid: SourceGrid { ground: 4, low: 4, high: 4, azimuths: 8 },
-                source_size: [32, 16],
+                source_size: [40, 14],
                 source_orders: 4,
                 sky_view_size: [32, 48],
                 froxel_size: [8, 16, 16],
@@ -189,7 +189,7 @@ impl Settings {
                 skipping: Skipping::USUAL,
             },
             Quality::Medium => Self {
-                nodes_per_leg: 10,
+                nodes_per_leg: 12,
                 quadrature: Quadrature::GaussLegendre,
                 optical_depth_panels: 64,
                 table_format: TableFormat::Float32,
@@ -202,7 +202,7 @@ impl Settings {
                 ringing_limit: 0.015,
                 shadow_limit: 0.4,
                 source_grid: SourceGrid { ground: 4, low: 5, high: 5, azimuths: 8 },
-                source_size: [40, 20],
+                source_size: [48, 18],
                 source_orders: 4,
                 sky_view_size: [48, 96],
                 froxel_size: [12, 24, 24],

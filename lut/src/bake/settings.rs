@@ -37,18 +37,18 @@ pub struct BakeSettings {
 impl BakeSettings {
     /// For weak devices: 2.8 MB of scattered light in half floats, for two scatterers.
     pub const LOW: Self = Self {
-        nodes_per_leg: 8,
+        nodes_per_leg: 10,
         optical_depth_size: [128, 48],
-        source_size: [32, 16],
+        source_size: [40, 14],
         source_grid: SourceGrid { ground: 4, low: 4, high: 4, azimuths: 8 },
         orders: 4,
         scattering: ScatteringSize { azimuths: 5, suns: 40, elevations: 24, altitudes: 12 },
     };
     /// The default: 16 MB.
     pub const MEDIUM: Self = Self {
-        nodes_per_leg: 10,
+        nodes_per_leg: 12,
         optical_depth_size: [256, 64],
-        source_size: [40, 20],
+        source_size: [48, 18],
         source_grid: SourceGrid { ground: 4, low: 5, high: 5, azimuths: 8 },
         orders: 4,
         scattering: ScatteringSize { azimuths: 8, suns: 64, elevations: 32, altitudes: 20 },
