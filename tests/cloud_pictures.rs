@@ -3,11 +3,14 @@
 mod common;
 
 use common::with_renderer;
+use std::borrow::Cow;
 use std::path::Path;
 
 use glam::DVec3;
 use welkin::foreground::{Depth, Foreground};
 use welkin::frame::Frame;
+use welkin::gpu::{DeviceRequest, Gpu};
+use welkin::passes::ShaderSources;
 use welkin::plan::{CloudScattering, CloudSettings, Decision, Outputs, Plan, Quality, Settings, Skipping};
 use welkin::reference::{World, transport};
 use welkin::renderer::{Rendered, Renderer};
@@ -178,6 +181,28 @@ fn frames_of_a_sequence_follow_the_clouds_and_a_cut_leaves_nothing_behind() {
             false => assert!(error < 1e-3, "{error}"),
         }
     }
+}
+
+/// The frames of a sequence, by a renderer of its own.
+fn sequence(scenes: &[Scene], shaders: ShaderSources) -> Vec<Rendered> {
+    let gpu = Gpu::new(&DeviceRequest::default()).unwrap();
+    let mut renderer = Renderer::with_shaders(gpu, shaders).unwrap();
+    scenes.iter().map(|scene| renderer.render_next(scene, settings(), CAPTURE).unwrap()).collect()
+}
+
+#[test]
+fn a_device_that_interpolates_no_32_bit_floats_follows_the_same_clouds() {
+    let _alone = common::alone();
+    let text = include_str!("../shaders/wgsl/cloud_reconstruction.wgsl");
+    let as_if_unable = text.replace("#ifdef FILTERED", "#ifdef UNABLE").replace("#ifndef FILTERED", "#ifndef UNABLE");
+    assert_eq!(text.matches("FILTERED").count() - as_if_unable.matches("FILTERED").count(), 2, "the pass has changed");
+    let scenes = &turning(0.015, 4)[..4];
+    let interpolated = sequence(scenes, ShaderSources::embedded());
+    let unable = ShaderSources::embedded().with("cloud_reconstruction.wgsl", Cow::Owned(as_if_unable));
+    let written_out = sequence(scenes, unable);
+    // Filters may round a texel's share to a 256th, and a pixel differs from the next by up to all of its light.
+    let apart = difference(&written_out[3], &interpolated[3]);
+    assert!(apart <= 1.0 / 256.0, "{apart}");
 }
 
 #[test]
