@@ -344,11 +344,11 @@ fn settings_follow_from_an_error_or_a_time() {
     };
     let (coarse, found) = goal("--target-error 0.1");
     assert!(found["predicted_error"].as_f64().unwrap() <= 0.1, "{found}");
-    let (fine, found) = goal("--target-error 0.003");
-    assert!(fine != coarse && found["predicted_error"].as_f64().unwrap() <= 0.003, "{coarse}, {fine}: {found}");
+    let (fine, found) = goal("--target-error 0.002");
+    assert!(fine != coarse && found["predicted_error"].as_f64().unwrap() <= 0.002, "{coarse}, {fine}: {found}");
     // The scene is tried once.
     let tried = kept("distances");
-    assert_eq!((goal("--target-error 0.003").0, kept("distances")), (fine, tried));
+    assert_eq!((goal("--target-error 0.002").0, kept("distances")), (fine, tried));
     // With all the time of the world the best; the device is measured once.
     let (best, predicted) = goal("--budget-ms 1e9");
     let measured = kept("calibration");
