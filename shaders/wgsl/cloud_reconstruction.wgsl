@@ -26,8 +26,8 @@
 @group(0) @binding(5) var cloud_air_history: texture_2d<f32>;
 @group(0) @binding(6) var cloud_diffuse_history: texture_2d<f32>;
 @group(0) @binding(7) var table_sampler: sampler;
-// Shares of other light, from 0 to 1, lose nothing that shows as half floats.
 @group(0) @binding(8) var cloud_radiance_image: texture_storage_2d<rgba32float, write>;
+// What clouds leave of other light, near 1 at most: to half floats' 11 digits.
 @group(0) @binding(9) var cloud_air_image: texture_storage_2d<rgba16float, write>;
 @group(0) @binding(12) var cloud_diffuse_image: texture_storage_2d<rgba16float, write>;
 #ifdef CAPTURE
@@ -47,7 +47,7 @@ const GROUP_SIZE = vec2<u32>(32u, 2u);
 const NEW_SHARE: f32 = 0.7;
 // Where there is no cloud, the point that is followed is as good as infinitely far, m.
 const FAR_M: f32 = 1e7;
-// A place that no picture has, nor any place between it and one in a picture but those within a pixel of that.
+// Beside every picture, and so far that no pixel between it and a place in one is in that either.
 const UNSEEN = vec2<f32>(-1e9);
 
 // The three images of the clouds at a pixel.

@@ -9,8 +9,8 @@ const NAME: &str = "cloud_reconstruction";
 /// What is reconstructed, by the names of the frame before and of this one.
 const IMAGES: [([&str; 2], ImageFormat); 3] = [
     (["cloud_radiance_history", "cloud_radiance_image"], ImageFormat::Rgba32Float),
-    (["cloud_air_history", "cloud_air_image"], ImageFormat::Rgba16Float),
-    (["cloud_diffuse_history", "cloud_diffuse_image"], ImageFormat::Rgba16Float),
+    (["cloud_air_history", "cloud_air_image"], clouds::FOLLOWED_SHARES),
+    (["cloud_diffuse_history", "cloud_diffuse_image"], clouds::FOLLOWED_SHARES),
 ];
 
 /// The pass.

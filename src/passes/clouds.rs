@@ -31,8 +31,8 @@ pub const PASS: Pass = Pass {
         },
         bytes: |facts| {
             let distance = if facts.keeps_cloud_distance() { ImageFormat::R32Float.texel_bytes() } else { 0 };
-            marched_shape(facts).texels()
-                * (images(facts).iter().map(|(_, format)| format.texel_bytes()).sum::<u64>() + distance)
+            let images: u64 = images(facts).iter().map(|(_, format)| format.texel_bytes()).sum();
+            marched_shape(facts).texels() * (images + distance)
         },
     },
     record,
@@ -55,10 +55,13 @@ pub(super) const MARCH_READS: [&str; 10] = [
 /// The same up to hills.
 const READS: [&str; 11] = joined(MARCH_READS, ["terrain_image"]);
 
-/// What is marched into, and its format: by the names of whole pictures, and of those of which a frame marches some pixels. What
-/// clouds leave of other light are shares of it: half floats hold them well enough for frames that go by.
+/// How frames that follow each other keep what clouds leave of other light: shares of it, which half floats hold well enough for
+/// frames that go by.
+pub(super) const FOLLOWED_SHARES: ImageFormat = ImageFormat::Rgba16Float;
+
+/// What is marched into, and its format: by the names of whole pictures, and of those of which a frame marches some pixels.
 fn images(facts: &Facts) -> [([&'static str; 2], ImageFormat); 3] {
-    let shares = if facts.follows_clouds() { ImageFormat::Rgba16Float } else { ImageFormat::Rgba32Float };
+    let shares = if facts.follows_clouds() { FOLLOWED_SHARES } else { ImageFormat::Rgba32Float };
     [
         (["cloud_radiance_image", "cloud_radiance_samples"], ImageFormat::Rgba32Float),
         (["cloud_air_image", "cloud_air_samples"], shares),
