@@ -1,7 +1,7 @@
-//! Optical depths of clouds towards the light, as the device finds them from its cached grids, against the reference's along
+//! Optical depths of clouds towards the light, as the device finds them from its cached volumes, against the reference's along
 //! the same lines, in distribution; prints Markdown.
 //!
-//! `cargo run --release --example cloud_depths -- [--quality NAME]... [--width PIXELS] [--scene FILE]...`
+//! `cargo run --release --example cloud_depths -- [--quality NAME]... [--width PIXELS] [--scene FILE]... [--without-ordinates]`
 //!
 //! Each pixel asks at the place where light that reaches it was scattered last, as chance has it: so many places as pixels
 //! with clouds. The air is left out. Columns: places in a range of distances; the quartiles of the depth, found and true;
@@ -34,6 +34,9 @@ struct Arguments {
     /// Shaders to take in place of the built-in ones.
     #[arg(long)]
     shaders: Option<PathBuf>,
+    /// Only the grid of depths, as lights have it that are not the ordinates'.
+    #[arg(long)]
+    without_ordinates: bool,
     /// Points between a place and where the grid takes over, in place of the quality's.
     #[arg(long)]
     near_samples: Option<u32>,
@@ -88,10 +91,10 @@ fn places(scene: &Scene, quality: Quality, arguments: &Arguments) -> Vec<Place> 
     let gpu = Gpu::new(&DeviceRequest::default()).unwrap_or_else(|error| panic!("{error}"));
     let mut renderer =
         Renderer::with_shaders(gpu, asking(arguments.shaders.as_deref())).unwrap_or_else(|error| panic!("{error}"));
-    // Without ordinates, which the depths do not depend on.
     let preset = CloudSettings::of(quality);
     let near_samples = arguments.near_samples.unwrap_or(preset.near_samples);
-    let clouds = CloudSettings { scattering: CloudScattering::Single, near_samples, ..preset };
+    let scattering = if arguments.without_ordinates { CloudScattering::Single } else { preset.scattering };
+    let clouds = CloudSettings { scattering, near_samples, ..preset };
     let settings = Settings { clouds, ..Settings::of(quality) };
     let rendered = renderer.render(scene, settings, Outputs { capture: true, picture: false });
     let frame = rendered.unwrap_or_else(|error| panic!("{error}")).frame;

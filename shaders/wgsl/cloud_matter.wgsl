@@ -14,3 +14,9 @@ struct CloudMatter {
 }
 
 @group(1) @binding(8) var<storage, read> cloud_matter: array<CloudMatter>;
+
+// Share of the extinction that is the similar medium's: 1 - W f.
+fn similar_share(matter: CloudMatter) -> f32 {
+    let albedo = dot(matter.albedo, vec3<f32>(1.0 / 3.0));
+    return 1.0 - albedo * (1.0 - matter.similarity);
+}

@@ -6,16 +6,16 @@
 //            scattering has one with a = 1, octaves and bands several: only the numbers differ
 //   nu       cosine of the angle between view direction and light
 //
-// Definitions: CLOUD_NEAR_SAMPLES, looked at between a sample and where the grid of depths takes over; CLOUD_TERM_COUNT; CLOUD_ORDINATES (light scattered many times is
+// Definitions: CLOUD_NEAR_SAMPLES, looked at between a sample and where cached depths take over; CLOUD_TERM_COUNT; CLOUD_ORDINATES (light scattered many times is
 // solved for), of the light ORDINATES_LIGHT.
 
 #import welkin::cloud_daylight::{cloud_light_image, light_in_air, surroundings}
 #import welkin::cloud_field::{cloud_layers, layer_density, CLOUD_LAYER_COUNT, CLOUD_LAYER_SLOTS}
 #import welkin::cloud_grid::{cell_m, grid_sample, level_of, local_direction, Part}
-#import welkin::cloud_matter::{cloud_matter, CloudMatter}
+#import welkin::cloud_matter::{cloud_matter, similar_share, CloudMatter}
 #import welkin::loops::counted
 #import welkin::observer::{observer, LIGHT_COUNT}
-#import welkin::ordinates_light::scattered_light
+#import welkin::ordinates_light::{depth_to_sun, scattered_light, texel_width_m}
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
 #import welkin::tables::table_sampler
 
@@ -85,32 +85,59 @@ fn nearly_straight(sample: Sample, matter: CloudMatter) -> f32 {
 }
 
 const NEAR_SAMPLES: u32 = #{CLOUD_NEAR_SAMPLES}u;
-// Where the grid takes over, in its cells: closer, it cannot tell a cloud's edge from its core. The stretches of the samples
-// grow with the distance: what dims most lies close, and in wide cells equal stretches would step over it.
+// Where the grid of depths takes over, in its cells: closer, it cannot tell a cloud's edge from its core. The stretches of
+// the samples grow with the distance: what dims most lies close, and in wide cells equal stretches would step over it.
 const NEAR_CELLS: f32 = 2.5;
+#ifdef CLOUD_ORDINATES
+// The same for the light of the ordinates, whose texels hold a depth of their own.
+const NEAR_TEXELS: f32 = 5.0;
+#endif
 
-// Optical depth of clouds from a sample to a light.
-fn depth_to_light(sample: Sample, light: u32) -> f32 {
-    let layer = sample.layer;
-    let toward = local_direction(sample.map, observer.lights[light].direction);
-    let near_m = select(0.0, NEAR_CELLS * cell_m(level_of(sample.map)), NEAR_SAMPLES > 0u);
-    var near = 0.0;
+// Of what a layer has within a distance towards a light.
+fn depth_nearby(sample: Sample, toward: vec3<f32>, near_m: f32) -> f32 {
+    var depth = 0.0;
     for (var i = 0u; i < counted(NEAR_SAMPLES); i++) {
         let edges = vec2<f32>(f32(i), f32(i + 1u)) / f32(NEAR_SAMPLES);
         let from_to_m = near_m * edges * edges;
         let t_m = 0.5 * (from_to_m.x + from_to_m.y);
-        let density = layer_density(layer, sample.map + toward.xy * t_m, sample.altitude_m + toward.z * t_m);
-        near += density * (from_to_m.y - from_to_m.x);
+        let density = layer_density(sample.layer, sample.map + toward.xy * t_m, sample.altitude_m + toward.z * t_m);
+        depth += density * (from_to_m.y - from_to_m.x);
     }
-    near *= cloud_layers[layer].extinction_per_m;
-    let height = sample.height + toward.z * near_m / cloud_layers[layer].thickness_m;
+    return depth * cloud_layers[sample.layer].extinction_per_m;
+}
+
+// Of what lies beyond the distance: from the grid of depths.
+fn depth_beyond(sample: Sample, toward: vec3<f32>, near_m: f32, light: u32) -> f32 {
+    let layer = sample.layer;
     let map = sample.map + toward.xy * near_m;
+    let height = sample.height + toward.z * near_m / cloud_layers[layer].thickness_m;
     let far = grid_sample(cloud_light_image, table_sampler, Part(light, LIGHT_COUNT), layer, map, height).x;
 #if CLOUD_LAYER_COUNT > 1
-    return near + far;
+    return far;
 #else
-    return near + select(0.0, far, height <= 1.0);
+    return select(0.0, far, height <= 1.0);
 #endif
+}
+
+// Optical depth of clouds from a sample to a light. The grid of depths holds means over its cells, which are too dark behind
+// lumps and at the edges of shadows: for the light that has one, the ordinates' depth is taken, with all layers' matter taken
+// for this one's.
+fn depth_to_light(sample: Sample, light: u32) -> f32 {
+    let toward = local_direction(sample.map, observer.lights[light].direction);
+    var near_m = NEAR_CELLS * cell_m(level_of(sample.map));
+#ifdef CLOUD_ORDINATES
+    let place_m = vec3<f32>(sample.map, sample.altitude_m);
+    near_m = select(near_m, NEAR_TEXELS * texel_width_m(place_m), light == ORDINATES_LIGHT);
+#endif
+    near_m = select(0.0, near_m, NEAR_SAMPLES > 0u);
+    let near = depth_nearby(sample, toward, near_m);
+#ifdef CLOUD_ORDINATES
+    if light == ORDINATES_LIGHT {
+        let similar = depth_to_sun(place_m + near_m * toward, table_sampler);
+        return near + similar / similar_share(cloud_matter[sample.layer]);
+    }
+#endif
+    return near + depth_beyond(sample, toward, near_m, light);
 }
 
 // Radiance that a step adds, before the air in front of it.

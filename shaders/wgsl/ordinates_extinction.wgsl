@@ -5,7 +5,7 @@
 // extinction would: the second is -ln <e^-depth> / length over the lines through the points, the mean of the three axes.
 
 #import welkin::cloud_field::{cloud_layers, layer_density, CLOUD_LAYER_COUNT}
-#import welkin::cloud_matter::cloud_matter
+#import welkin::cloud_matter::{cloud_matter, similar_share}
 #import welkin::ordinates_grid::{ordinates, REFINEMENT}
 
 struct Part {
@@ -22,11 +22,8 @@ fn similar_extinction(place_m: vec3<f32>) -> f32 {
     for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
         let up_m = place_m.z - cloud_layers[layer].base_m;
         if up_m >= 0.0 && up_m <= cloud_layers[layer].thickness_m {
-            let matter = cloud_matter[layer];
-            let albedo = dot(matter.albedo, vec3<f32>(1.0 / 3.0));
-            // 1 - W f.
-            let share = 1.0 - albedo * (1.0 - matter.similarity);
-            sum += share * cloud_layers[layer].extinction_per_m * layer_density(layer, place_m.xy, place_m.z);
+            let extinction_per_m = cloud_layers[layer].extinction_per_m * layer_density(layer, place_m.xy, place_m.z);
+            sum += similar_share(cloud_matter[layer]) * extinction_per_m;
         }
     }
     return sum;

@@ -13,9 +13,12 @@
 // Cells are wide and clouds' lit sides are not: a view ray knows its own depth to the sun, d, and the texels theirs, D. Light
 // falls into clouds about as 1 / (1 + a d), so that it is (1 + a D) / (1 + a d) times the texels' where both are scattered.
 //
+// Beyond a few texels D itself serves a view ray for d: `depth_to_sun`. Texels have the extinction with which lumps let light
+// through between them, which less than their mean depth dims.
+//
 // Legend and definitions: those of welkin::ordinates_grid.
 
-#import welkin::ordinates_grid::{coordinates, level_of, ordinates, weight_of, LEVEL_COUNT, REFINEMENT}
+#import welkin::ordinates_grid::{coordinates, highest_m, level_of, ordinates, weight_of, LEVEL_COUNT, REFINEMENT}
 
 @group(2) @binding(1) var ordinates_sunlight: texture_3d<f32>;
 @group(2) @binding(2) var ordinates_skylight: texture_3d<f32>;
@@ -47,17 +50,54 @@ fn scattered_from(level: u32, place_m: vec3<f32>, view: vec3<f32>, beam: f32, li
     return max(vec2<f32>(sun.w, sky.w) - ordinates.reduced_cosine * along, vec2<f32>(0.0));
 }
 
-// Light of the sun per unit irradiance (1/sr) and of a sky of radiance 1 that the similar medium scatters into a view
-// ray, per unit of its scattering. Beyond the outermost level that level's edge is repeated.
-fn scattered_light(place_m: vec3<f32>, view: vec3<f32>, beam: f32, linear: sampler) -> vec2<f32> {
+// Which levels count at a place: one, and with the share `outward` the next. Beyond the outermost level that level's edge is
+// repeated.
+struct Levels {
+    inner: u32,
+    outward: f32,
+}
+
+fn levels_at(place_m: vec3<f32>) -> Levels {
     let level = min(level_of(place_m), LEVEL_COUNT - 1u);
-    let light = scattered_from(level, place_m, view, beam, linear);
     let box = ordinates.levels[level];
     let half_m = 0.5 * vec2<f32>(box.size.xy) * box.cell_m.xy;
     let from_middle = abs(place_m.xy - box.lowest_m.xy - half_m) / half_m;
     let outward = saturate((max(from_middle.x, from_middle.y) - INNER) / (1.0 - INNER));
-    if outward <= 0.0 || level + 1u == LEVEL_COUNT {
+    return Levels(level, select(outward, 0.0, level + 1u == LEVEL_COUNT));
+}
+
+// Light of the sun per unit irradiance (1/sr) and of a sky of radiance 1 that the similar medium scatters into a view
+// ray, per unit of its scattering.
+fn scattered_light(place_m: vec3<f32>, view: vec3<f32>, beam: f32, linear: sampler) -> vec2<f32> {
+    let levels = levels_at(place_m);
+    let light = scattered_from(levels.inner, place_m, view, beam, linear);
+    if levels.outward <= 0.0 {
         return light;
     }
-    return mix(light, scattered_from(level + 1u, place_m, view, beam, linear), outward);
+    return mix(light, scattered_from(levels.inner + 1u, place_m, view, beam, linear), levels.outward);
+}
+
+// Width of the texels at a place, m.
+fn texel_width_m(place_m: vec3<f32>) -> f32 {
+    let levels = levels_at(place_m);
+    // Each level's are twice as wide as those of the one inside it.
+    return ordinates.levels[levels.inner].cell_m.x / f32(REFINEMENT) * (1.0 + levels.outward);
+}
+
+fn depth_from(level: u32, place_m: vec3<f32>, linear: sampler) -> f32 {
+    let at = coordinates(place_m, level, vec3<f32>(textureDimensions(ordinates_depth)), f32(REFINEMENT));
+    return textureSampleLevel(ordinates_depth, linear, at, 0.0).x;
+}
+
+// Optical depth of the similar medium from a place to the sun. Above and below all clouds there is none.
+fn depth_to_sun(place_m: vec3<f32>, linear: sampler) -> f32 {
+    let levels = levels_at(place_m);
+    if place_m.z > highest_m(levels.inner).z || place_m.z < ordinates.levels[levels.inner].lowest_m.z {
+        return 0.0;
+    }
+    let depth = depth_from(levels.inner, place_m, linear);
+    if levels.outward <= 0.0 {
+        return depth;
+    }
+    return mix(depth, depth_from(levels.inner + 1u, place_m, linear), levels.outward);
 }
