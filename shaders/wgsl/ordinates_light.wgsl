@@ -14,7 +14,7 @@
 // falls into clouds about as 1 / (1 + a d), so that it is (1 + a D) / (1 + a d) times the texels' where both are scattered.
 //
 // Beyond a few texels D itself serves a view ray for d: `depth_to_sun`. Texels have the extinction with which lumps let light
-// through between them, which less than their mean depth dims.
+// through between them: they dim less than their mean extinction would.
 //
 // Legend and definitions: those of welkin::ordinates_grid.
 
