@@ -359,8 +359,8 @@ fn towers_are_lit_as_deep_as_the_sun_shines_into_them() {
         frame.radiance.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / frame.radiance.len() as f64
     };
     let [truth, error] = traced(&scene);
-    let [texels, grid] = [CloudScattering::Ordinates8, CloudScattering::Single]
-        .map(|scattering| (mean(scattering) / truth - 1.0).abs());
+    let [texels, grid] =
+        [CloudScattering::Ordinates8, CloudScattering::Single].map(|scattering| (mean(scattering) / truth - 1.0).abs());
     let least = 3.0 * error / truth;
     println!("off by {texels}, from the grid of depths by {grid}, three standard errors of the truth {least}");
     // Depths to the sun that texels of 60 m and wider know to a few per cent of what they leave (`examples/cloud_depths.rs`).
