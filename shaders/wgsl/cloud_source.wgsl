@@ -15,7 +15,7 @@
 #import welkin::cloud_matter::{cloud_matter, similar_share, CloudMatter}
 #import welkin::loops::counted
 #import welkin::observer::{observer, LIGHT_COUNT}
-#import welkin::ordinates_light::{depth_to_sun, scattered_light, texel_width_m}
+#import welkin::ordinates_light::{depth_to_sun, levels_at, scattered_light, texel_width_m}
 #import welkin::phase::{lobe_per_sr, PhaseLobe}
 #import welkin::tables::table_sampler
 
@@ -122,18 +122,13 @@ fn depth_beyond(sample: Sample, toward: vec3<f32>, near_m: f32, light: u32) -> f
 // Optical depth of clouds from a sample to a light. The grid of depths holds means over its cells, which are too dark behind
 // lumps and at the edges of shadows: for the light that has one, the ordinates' depth is taken, with all layers' matter taken
 // for this one's.
-fn depth_to_light(sample: Sample, light: u32) -> f32 {
+fn depth_to_light(sample: Sample, light: u32, takeover_m: f32) -> f32 {
     let toward = local_direction(sample.map, observer.lights[light].direction);
-    var near_m = NEAR_CELLS * cell_m(level_of(sample.map));
-#ifdef CLOUD_ORDINATES
-    let place_m = vec3<f32>(sample.map, sample.altitude_m);
-    near_m = select(near_m, NEAR_TEXELS * texel_width_m(place_m), light == ORDINATES_LIGHT);
-#endif
-    near_m = select(0.0, near_m, NEAR_SAMPLES > 0u);
+    let near_m = select(0.0, takeover_m, NEAR_SAMPLES > 0u);
     let near = depth_nearby(sample, toward, near_m);
 #ifdef CLOUD_ORDINATES
     if light == ORDINATES_LIGHT {
-        let similar = depth_to_sun(place_m + near_m * toward, table_sampler);
+        let similar = depth_to_sun(vec3<f32>(sample.map, sample.altitude_m) + near_m * toward, table_sampler);
         return near + similar / similar_share(cloud_matter[sample.layer]);
     }
 #endif
@@ -145,22 +140,24 @@ fn step_radiance(
     sample: Sample, view: vec3<f32>, phase: ptr<function, array<f32, PHASE_COUNT>>
 ) -> vec3<f32> {
     let matter = cloud_matter[sample.layer];
+    let takeover_m = NEAR_CELLS * cell_m(level_of(sample.map));
     var radiance = vec3<f32>(0.0);
 #ifdef CLOUD_ORDINATES
+    let place_m = vec3<f32>(sample.map, sample.altitude_m);
+    let levels = levels_at(place_m);
+    let to_sun = depth_to_light(sample, ORDINATES_LIGHT, NEAR_TEXELS * texel_width_m(levels));
     let local_view = vec3<f32>(view.xy, dot(view, sample.up));
-    let to_sun = depth_to_light(sample, ORDINATES_LIGHT);
-    let beam = exp(-matter.similarity * to_sun);
-    let solved = scattered_light(vec3<f32>(sample.map, sample.altitude_m), local_view, beam, table_sampler);
+    let solved = scattered_light(levels, place_m, local_view, exp(-matter.similarity * to_sun), table_sampler);
 #endif
     for (var light = 0u; light < LIGHT_COUNT; light++) {
         let mu_s = dot(sample.up, observer.lights[light].direction);
 #ifdef CLOUD_ORDINATES
         var to_light = to_sun;
         if light != ORDINATES_LIGHT {
-            to_light = depth_to_light(sample, light);
+            to_light = depth_to_light(sample, light, takeover_m);
         }
 #else
-        let to_light = depth_to_light(sample, light);
+        let to_light = depth_to_light(sample, light, takeover_m);
 #endif
         var directional = 0.0;
         for (var k = 0u; k < TERM_COUNT; k++) {

@@ -1,7 +1,7 @@
 #define_import_path welkin::ordinates_light
 // The light that the passes `ordinates_*` have found in clouds, for view rays.
 //
-//   let light = scattered_light(place_m, view, beam, linear_sampler);
+//   let light = scattered_light(levels_at(place_m), place_m, view, beam, linear_sampler);
 //   radiance += (light.x * sun_irradiance + light.y * sky_radiance) * albedo * q * int c e^(-q tau) ds
 //
 // with beam = e^(-q tau_sun), q = 1 - f of the droplets, c the true extinction and tau the true optical depth along the view so far. The sun's
@@ -12,6 +12,10 @@
 //
 // Cells are wide and clouds' lit sides are not: a view ray knows its own depth to the sun, d, and the texels theirs, D. Light
 // falls into clouds about as 1 / (1 + a d), so that it is (1 + a D) / (1 + a d) times the texels' where both are scattered.
+//
+// What wide cells lack, light that leaves sharp edges too easily, grows with their width. The next level, twice as wide, tells
+// how much it is: light is to its light there as cells of no width would be to this level (Richardson's extrapolation, of
+// logarithms, so that light stays positive).
 //
 // Beyond a few texels D itself serves a view ray for d: `depth_to_sun`. Texels have the extinction with which lumps let light
 // through between them: they dim less than their mean extinction would.
@@ -31,6 +35,9 @@ const INNER: f32 = 0.85;
 
 // The light differs from the texels' by no more than this factor.
 const MOST: f32 = 4.0;
+
+// Nor do cells of no width from a level's by more than this one.
+const MOST_REFINED: f32 = 2.0;
 
 const FOUR_PI: f32 = 12.5663706143592;
 
@@ -66,20 +73,29 @@ fn levels_at(place_m: vec3<f32>) -> Levels {
     return Levels(level, select(outward, 0.0, level + 1u == LEVEL_COUNT));
 }
 
+// The same as cells of no width would have it; of the outermost level, which no other is wider than, its own.
+fn refined_from(level: u32, place_m: vec3<f32>, view: vec3<f32>, beam: f32, linear: sampler) -> vec2<f32> {
+    let light = scattered_from(level, place_m, view, beam, linear);
+    if level + 1u == LEVEL_COUNT {
+        return light;
+    }
+    let wider = scattered_from(level + 1u, place_m, view, beam, linear);
+    let ratio = light / max(wider, vec2<f32>(1e-20));
+    return light * clamp(ratio, vec2<f32>(1.0 / MOST_REFINED), vec2<f32>(MOST_REFINED));
+}
+
 // Light of the sun per unit irradiance (1/sr) and of a sky of radiance 1 that the similar medium scatters into a view
 // ray, per unit of its scattering.
-fn scattered_light(place_m: vec3<f32>, view: vec3<f32>, beam: f32, linear: sampler) -> vec2<f32> {
-    let levels = levels_at(place_m);
-    let light = scattered_from(levels.inner, place_m, view, beam, linear);
+fn scattered_light(levels: Levels, place_m: vec3<f32>, view: vec3<f32>, beam: f32, linear: sampler) -> vec2<f32> {
+    let light = refined_from(levels.inner, place_m, view, beam, linear);
     if levels.outward <= 0.0 {
         return light;
     }
-    return mix(light, scattered_from(levels.inner + 1u, place_m, view, beam, linear), levels.outward);
+    return mix(light, refined_from(levels.inner + 1u, place_m, view, beam, linear), levels.outward);
 }
 
-// Width of the texels at a place, m.
-fn texel_width_m(place_m: vec3<f32>) -> f32 {
-    let levels = levels_at(place_m);
+// Width of the texels of levels, m.
+fn texel_width_m(levels: Levels) -> f32 {
     // Each level's are twice as wide as those of the one inside it.
     return ordinates.levels[levels.inner].cell_m.x / f32(REFINEMENT) * (1.0 + levels.outward);
 }
