@@ -316,13 +316,16 @@ fn sky_between_clouds_is_brighter_and_the_horizon_below_an_overcast_is_no_bright
     }
 }
 
-/// Towers in a vacuum over black ground, of droplets that absorb nearly all and scatter the rest evenly: what is seen was
-/// scattered once, and is as bright as the droplets' depths towards the sun let it be.
-fn dark_towers() -> Scene {
+/// Towers in a vacuum over black ground, of droplets that scatter evenly.
+fn towers(droplets: &str, view: &str) -> Scene {
     let text = "preset = \"earth\"\nmedium = []\nplanet.ground_albedo = 0\nsun = { elevation_deg = 30, azimuth_deg = 250 }\n\
-        camera = { altitude_m = 500, elevation_deg = 14, azimuth_deg = 330, width = 32, height = 18 }\n\
-        [[clouds]]\nkind = \"congestus\"\ncoverage = 0.3\nalbedo = 0.02\nphase.henyey_greenstein.g = 0\n";
-    Scene::parse(text, Path::new("towers.toml")).unwrap()
+        camera = { altitude_m = 500, width = 32, height = 18, ";
+    let cloud = "[[clouds]]\nkind = \"congestus\"\ncoverage = 0.3\nphase.henyey_greenstein.g = 0\n";
+    Scene::parse(&format!("{text}{view} }}\n{cloud}{droplets}\n"), Path::new("towers.toml")).unwrap()
+}
+
+fn mean_radiance(frame: &Frame) -> f64 {
+    frame.radiance.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / frame.radiance.len() as f64
 }
 
 /// Mean radiance and its standard error by the path tracer.
@@ -348,15 +351,15 @@ fn traced(scene: &Scene) -> [f64; 2] {
     [mean, answers.iter().map(|answer| answer.standard_error[1].powi(2)).sum::<f64>().sqrt() / count]
 }
 
+/// What is seen of droplets that absorb nearly all was scattered once, and is as bright as their depths towards the sun let it be.
 #[test]
 fn towers_are_lit_as_deep_as_the_sun_shines_into_them() {
-    let scene = dark_towers();
+    let scene = towers("albedo = 0.02", "elevation_deg = 14, azimuth_deg = 330");
     // Light scattered many times needs no sweeps here: there is none.
     let clouds = CloudSettings { sweeps: 1, ..CloudSettings::of(Quality::Medium) };
     let mean = |scattering| {
         let settings = Settings { clouds: CloudSettings { scattering, ..clouds }, ..Settings::of(Quality::Low) };
-        let frame = &render(std::slice::from_ref(&scene), settings)[0].frame;
-        frame.radiance.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / frame.radiance.len() as f64
+        mean_radiance(&render(std::slice::from_ref(&scene), settings)[0].frame)
     };
     let [truth, error] = traced(&scene);
     let [texels, grid] =
@@ -367,4 +370,38 @@ fn towers_are_lit_as_deep_as_the_sun_shines_into_them() {
     assert!(texels < 0.05 + least);
     // Negative control: means over the cells of the grid of depths.
     assert!(grid > 0.05 + least);
+}
+
+/// Light that is scattered many times leaves the sharp edges of clouds too easily where cells are wide: the next level says how much.
+#[test]
+fn wide_cells_cost_clouds_no_light() {
+    let _alone = common::alone();
+    // One 3 km away, so thin that cells are less than a free path wide: edges are all that they cannot tell.
+    let near = "elevation_deg = 20, azimuth_deg = 358, vertical_field_of_view_deg = 20";
+    let scene = towers("water_g_per_m3 = 0.2", near);
+    let clouds = CloudSettings {
+        scattering: CloudScattering::Ordinates8,
+        ordinate_cell_m: 120,
+        ordinate_cells: 64,
+        sweeps: 12,
+        ..CloudSettings::of(Quality::Medium)
+    };
+    let settings = Settings { clouds, ..Settings::of(Quality::Low) };
+    let text = include_str!("../shaders/wgsl/ordinates_light.wgsl");
+    let as_each_level_has_it = text.replace("const MOST_REFINED: f32 = 2.0;", "const MOST_REFINED: f32 = 1.0;");
+    assert_ne!(text, as_each_level_has_it, "the shader has changed");
+    let [truth, error] = traced(&scene);
+    let off = |shaders| {
+        let gpu = Gpu::new(&DeviceRequest::default()).unwrap();
+        let rendered = Renderer::with_shaders(gpu, shaders).unwrap().render(&scene, settings, CAPTURE).unwrap();
+        (mean_radiance(&rendered.frame) / truth - 1.0).abs()
+    };
+    let refined = off(ShaderSources::embedded());
+    let coarse = off(ShaderSources::embedded().with("ordinates_light.wgsl", Cow::Owned(as_each_level_has_it)));
+    let least = 3.0 * error / truth;
+    println!("off by {refined}, as each level has it by {coarse}, three standard errors of the truth {least}");
+    // The targets' energy at `ultra`, here in cells four times as wide.
+    assert!(refined < 0.05 + least);
+    // Negative control.
+    assert!(coarse > 0.05 + least);
 }
