@@ -33,6 +33,9 @@ pub struct MeasuredScene {
     /// The same, one standard error below.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub least_errors: BTreeMap<String, f64>,
+    /// The same, as measured; only a report knows it.
+    #[serde(skip)]
+    pub best_estimates: BTreeMap<String, f64>,
     /// By the name of the step of the ladder: all passes of a first picture, ms.
     pub milliseconds: BTreeMap<String, f64>,
 }

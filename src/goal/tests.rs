@@ -16,8 +16,15 @@ fn invented() -> MeasuredFront {
             front.passes.insert(step.to_string(), [tables, ("compose".to_owned(), 1.0)].into());
         }
         let traits = SceneTraits { light_elevation_deg, ..traits() };
-        let least_errors = errors.clone();
-        front.scenes.push(MeasuredScene { name: name.into(), traits, errors, least_errors, milliseconds });
+        let [least_errors, best_estimates] = [errors.clone(), errors.clone()];
+        front.scenes.push(MeasuredScene {
+            name: name.into(),
+            traits,
+            errors,
+            least_errors,
+            best_estimates,
+            milliseconds,
+        });
     }
     front
 }
@@ -92,6 +99,22 @@ fn on_scenes_that_were_left_out_targets_are_met() {
     // Without a margin they would not be.
     let (chosen, met) = all(-0.5);
     assert!((met as f64) < 0.9 * chosen as f64, "{met} of {chosen}");
+}
+
+#[test]
+fn a_choice_within_the_truths_noise_of_its_target_meets_it_as_measured_and_neither_meets_nor_misses_it_for_sure() {
+    let mut scene = invented().scenes.remove(0);
+    let step = LadderStep { rung: Rung::of(Quality::Medium), treatment: Treatment::Harmonics };
+    let name = step.to_string();
+    scene.errors.insert(name.clone(), 0.022);
+    scene.least_errors.insert(name.clone(), 0.017);
+    let choice = Choice { step, error: None, milliseconds: None };
+    // Whether it is met, met as measured and missed.
+    for (best, expected) in [(0.0195, [0, 1, 0]), (0.0205, [0, 0, 0])] {
+        scene.best_estimates.insert(name.clone(), best);
+        let trial = TargetTrial::of_choices(std::slice::from_ref(&scene), 0.02, |_| Some(choice));
+        assert_eq!([trial.met, trial.met_as_measured, trial.missed], expected);
+    }
 }
 
 /// Errors of steps on an invented scene: the source function's halve from preset to preset, harmonics stay at a floor. The finest is

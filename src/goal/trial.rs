@@ -17,6 +17,8 @@ pub struct TargetTrial {
     pub chosen: usize,
     /// Of these, those whose chosen settings meet the target, the truth's standard error included.
     pub met: usize,
+    /// Of these, those whose chosen settings meet it as measured.
+    pub met_as_measured: usize,
     /// Of these, those whose chosen settings miss it by more than the truth's standard error.
     pub missed: usize,
     /// Price of each choice over the cheapest that meets the target, where one does; ascending.
@@ -51,7 +53,8 @@ impl TargetTrial {
     }
 
     fn of(scenes: &[MeasuredScene], target: f64, choose: impl Fn(&MeasuredScene) -> Option<LadderStep>) -> Self {
-        let mut trial = Self { target, reachable: 0, chosen: 0, met: 0, missed: 0, price_ratios: Vec::new() };
+        let mut trial =
+            Self { target, reachable: 0, chosen: 0, met: 0, met_as_measured: 0, missed: 0, price_ratios: Vec::new() };
         for scene in scenes {
             trial.add(scene, choose(scene));
         }
@@ -70,6 +73,7 @@ impl TargetTrial {
         let Some(choice) = choice else { return };
         self.chosen += 1;
         self.met += usize::from(meets(&choice));
+        self.met_as_measured += usize::from(of(&scene.best_estimates, choice) <= self.target);
         self.missed += usize::from(of(&scene.least_errors, choice) > self.target);
         self.price_ratios.extend(best.map(|best| paid(&choice) / paid(&best)));
     }

@@ -18,9 +18,10 @@ const FRUGAL: f64 = 1.5;
 const NEAR: f64 = 0.2;
 
 /// What the columns of the table are.
-fn headings() -> [String; 8] {
+fn headings() -> [String; 9] {
     let frugal = format!("at most {FRUGAL}");
-    ["target %", "reachable", "chosen", "met", "missed", "price: median", &frugal, "most"].map(str::to_owned)
+    ["target %", "reachable", "chosen", "met", "as measured", "missed", "price: median", &frugal, "most"]
+        .map(str::to_owned)
 }
 
 /// How choices fare on the random scenes of a study.
@@ -58,17 +59,17 @@ impl Fares {
     }
 
     /// What the table says; the option's name and *words* are marked by the caller.
-    fn about(&self, option: &str, [met, missed, price]: [&str; 3]) -> String {
+    fn about(&self, option: &str, [met, measured, missed, price]: [&str; 4]) -> String {
         format!(
             "{option} on {} random scenes, each tried on its own pictures; nothing is learned from the others but the order of \
-             prices. {met}: the error of the chosen settings, a standard error of the truth included, is within the target; \
-             {missed}: even a standard error less is beyond it; of the others the truth's noise does not tell. {price}: time over that of \
+             prices. {met}: the error of the chosen settings, a standard error of the truth included, is within the target; {measured}: \
+             it is without that standard error; {missed}: even a standard error less is beyond it; of the others the truth's noise does not tell. {price}: time over that of \
              the cheapest settings that would have met it.",
             self.scenes
         )
     }
 
-    fn rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
+    fn rows(&self) -> impl Iterator<Item = [String; 9]> + '_ {
         self.found.iter().map(|trial| {
             let ratios = &trial.price_ratios;
             [
@@ -76,6 +77,7 @@ impl Fares {
                 trial.reachable.to_string(),
                 trial.chosen.to_string(),
                 trial.met.to_string(),
+                trial.met_as_measured.to_string(),
                 trial.missed.to_string(),
                 quantile(ratios, 0.5),
                 frugal(ratios).to_string(),
@@ -89,9 +91,10 @@ impl Fares {
         let sum = |trials: &[TargetTrial]| {
             let of = |count: fn(&TargetTrial) -> usize| trials.iter().map(count).sum::<usize>();
             let [chosen, met, missed] = [of(|trial| trial.chosen), of(|trial| trial.met), of(|trial| trial.missed)];
+            let measured = of(|trial| trial.met_as_measured);
             let [priced, cheap] = [of(|trial| trial.price_ratios.len()), of(|trial| frugal(&trial.price_ratios))];
             format!(
-                "{chosen} choices, of which {met} met their target and {missed} missed it; of {priced} with a price {cheap} cost at \
+                "{chosen} choices, of which {met} met their target, {measured} as measured, and {missed} missed it; of {priced} with a price {cheap} cost at \
                  most {FRUGAL} times the cheapest"
             )
         };
@@ -139,9 +142,9 @@ fn found(front: &MeasuredFront, scene: &SceneResults, target: f64) -> Option<Cho
 /// A section of Markdown; nothing where no random scene was measured.
 pub fn goal_tables(study: &Study) -> String {
     let Some(fares) = Fares::of(study) else { return String::new() };
-    let about = fares.about("`--target-error`", ["*Met*", "*missed*", "*Price*"]);
+    let about = fares.about("`--target-error`", ["*Met*", "*as measured*", "*missed*", "*Price*"]);
     let mut text = format!(
-        "\n## Settings for an error\n\n{about}\n\n| {} |\n|---|---|---|---|---|---|---|---|\n",
+        "\n## Settings for an error\n\n{about}\n\n| {} |\n|---|---|---|---|---|---|---|---|---|\n",
         headings().join(" | ")
     );
     for row in fares.rows() {
@@ -154,7 +157,10 @@ pub fn goal_tables(study: &Study) -> String {
 /// The same as HTML.
 pub fn goal_section(study: &Study) -> String {
     let Some(fares) = Fares::of(study) else { return String::new() };
-    let about = fares.about("<code>--target-error</code>", ["<em>Met</em>", "<em>missed</em>", "<em>Price</em>"]);
+    let about = fares.about(
+        "<code>--target-error</code>",
+        ["<em>Met</em>", "<em>as measured</em>", "<em>missed</em>", "<em>Price</em>"],
+    );
     let mut html = format!(
         "<h2>Settings for an error</h2><p>{about}</p>\n<table id=\"goals\"><tr><th>{}</tr>\n",
         headings().join("<th>")

@@ -43,6 +43,7 @@ pub(super) fn measured(scene: &SceneResults) -> MeasuredScene {
         traits: scene.traits,
         errors: by_name(&|point| four_digits(point.error.high)),
         least_errors: by_name(&|point| four_digits(point.error.low)),
+        best_estimates: by_name(&|point| four_digits(point.error.rms)),
         milliseconds: by_name(&|point| four_digits(point.milliseconds.median)),
     }
 }
