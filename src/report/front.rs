@@ -34,12 +34,12 @@ pub fn front(points: &[Point]) -> Vec<&Point> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::Deviation;
     use super::super::results::Spread;
     use super::*;
 
-    fn point(name: &str, milliseconds: f64, rms: f64, family: Family) -> Point {
+    pub(in crate::report) fn point(name: &str, milliseconds: f64, rms: f64, family: Family) -> Point {
         let error = Deviation {
             rms,
             low: 0.9 * rms,

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::Deviation;
 use super::goals::goal_tables;
-use super::overall::overall;
+use super::overall::tables;
 use super::pictures::file_name;
 use super::results::{Point, SceneResults, Study};
 
@@ -67,11 +67,7 @@ fn row(scene: &SceneResults, point: &Point) -> String {
 }
 
 fn overall_tables(study: &Study, text: &mut String) {
-    for (clouds, title) in [(false, "All scenes without clouds"), (true, "All scenes with clouds")] {
-        let rows = overall(&study.scenes, clouds);
-        if rows.is_empty() {
-            continue;
-        }
+    for (title, rows) in tables(study) {
         let _ = write!(
             text,
             "\n## {title}\n\nGeometric means.\n\n| settings | error % | ms | beaten by |\n|---|---|---|---|\n"

@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::goals::goal_section;
 use super::markdown::{error_with_bar, milliseconds, percent};
-use super::overall::overall;
+use super::overall::{Overall, tables};
 use super::pictures::{FULL_DIFFERENCE, difference_path, picture_path};
 use super::plot::{plot, slab_plot};
 use super::results::{SceneResults, Study};
@@ -42,8 +42,8 @@ pub fn page(study: &Study, pictures: &Path) -> Result<String, ReportError> {
     for left_out in &study.left_out {
         let _ = writeln!(html, "<p>Not measured: {}: {}.</p>", escape(&left_out.scene), escape(&left_out.reason));
     }
-    for (clouds, title) in [(false, "All scenes without clouds"), (true, "All scenes with clouds")] {
-        overall_table(&mut html, title, study, clouds);
+    for (title, rows) in tables(study) {
+        overall_table(&mut html, &title, &rows);
     }
     for scene in study.scenes.iter().filter(|scene| !scene.random) {
         scene_section(&mut html, scene, pictures)?;
@@ -89,11 +89,7 @@ fn slabs(html: &mut String, study: &Study) -> Result<(), ReportError> {
     Ok(())
 }
 
-fn overall_table(html: &mut String, title: &str, study: &Study, clouds: bool) {
-    let rows = overall(&study.scenes, clouds);
-    if rows.is_empty() {
-        return;
-    }
+fn overall_table(html: &mut String, title: &str, rows: &[Overall]) {
     let _ = write!(
         html,
         "<h2>{title}</h2><p>Geometric means.</p><table><tr><th>settings<th>error %<th>ms<th>faster and more accurate</tr>"
