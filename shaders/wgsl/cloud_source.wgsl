@@ -121,7 +121,7 @@ fn depth_beyond(sample: Sample, toward: vec3<f32>, near_m: f32, light: u32) -> f
 
 // Optical depth of clouds from a sample to a light. The grid of depths holds means over its cells, which are too dark behind
 // lumps and at the edges of shadows: for the light that has one, the ordinates' depth is taken, with all layers' matter taken
-// for this one's.
+// for this one's. From `takeover_m` on, cached depths count; nearer, the field itself is looked at.
 fn depth_to_light(sample: Sample, light: u32, takeover_m: f32) -> f32 {
     let toward = local_direction(sample.map, observer.lights[light].direction);
     let near_m = select(0.0, takeover_m, NEAR_SAMPLES > 0u);
