@@ -379,13 +379,8 @@ fn wide_cells_cost_clouds_no_light() {
     // One 3 km away, so thin that cells are less than a free path wide: edges are all that they cannot tell.
     let near = "elevation_deg = 20, azimuth_deg = 358, vertical_field_of_view_deg = 20";
     let scene = towers("water_g_per_m3 = 0.2", near);
-    let clouds = CloudSettings {
-        scattering: CloudScattering::Ordinates8,
-        ordinate_cell_m: 120,
-        ordinate_cells: 64,
-        sweeps: 12,
-        ..CloudSettings::of(Quality::Medium)
-    };
+    let clouds =
+        CloudSettings { scattering: CloudScattering::Ordinates8, sweeps: 12, ..CloudSettings::of(Quality::Medium) };
     let settings = Settings { clouds, ..Settings::of(Quality::Low) };
     let text = include_str!("../shaders/wgsl/ordinates_light.wgsl");
     let as_each_level_has_it = text.replace("const MOST_REFINED: f32 = 2.0;", "const MOST_REFINED: f32 = 1.0;");
@@ -400,7 +395,7 @@ fn wide_cells_cost_clouds_no_light() {
     let coarse = off(ShaderSources::embedded().with("ordinates_light.wgsl", Cow::Owned(as_each_level_has_it)));
     let least = 3.0 * error / truth;
     println!("off by {refined}, as each level has it by {coarse}, three standard errors of the truth {least}");
-    // The targets' energy at `ultra`, here in cells four times as wide.
+    // The energy that is asked of `ultra`, whose cells are as wide at this distance.
     assert!(refined < 0.05 + least);
     // Negative control.
     assert!(coarse > 0.05 + least);

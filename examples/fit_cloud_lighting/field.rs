@@ -183,7 +183,7 @@ impl LightField {
     }
 
     /// Light scattered towards a view ray's observer by the similar medium, per unit of its scattering: sun and sky; the
-    /// sun's beam is dimmed to a share. As `ordinates_light.wgsl` has it.
+    /// sun's beam is dimmed to a share. As `ordinates_light.wgsl` has it from a single level.
     pub fn scattered(&self, place_m: DVec3, direction: DVec3, beam: f64) -> [f64; 2] {
         let at = place_m / self.cell_m;
         let (fine, at) = (self.size * REFINEMENT, at * f64::from(REFINEMENT));

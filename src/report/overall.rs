@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::results::{Family, Point, SceneResults, Study};
+use super::results::{Family, SceneResults, Study};
 use crate::plan::{Quality, SceneKind};
 
 /// Settings over many scenes.
@@ -41,25 +41,21 @@ pub fn tables(study: &Study) -> Vec<(String, Vec<Overall>)> {
 /// What was measured on every scene of clear air or terrain (`clouds` false) or among clouds.
 pub fn overall(scenes: &[SceneResults], clouds: bool) -> Vec<Overall> {
     let those: Vec<_> = scenes.iter().filter(|scene| (scene.traits.kind == SceneKind::Clouds) == clouds).collect();
-    let mut sums: BTreeMap<String, (f64, f64, usize)> = BTreeMap::new();
+    let mut sums: BTreeMap<String, (f64, f64, usize, bool)> = BTreeMap::new();
     for scene in &those {
         for point in scene.points.iter().filter(|point| point.family != Family::Reference) {
             let logs = (point.error.rms.max(SMALLEST).ln(), point.milliseconds.median.max(1e-6).ln());
             for name in [Some(&point.name), point.preset.as_ref()].into_iter().flatten() {
                 let sum = sums.entry(name.clone()).or_default();
-                *sum = (sum.0 + logs.0, sum.1 + logs.1, sum.2 + 1);
+                *sum = (sum.0 + logs.0, sum.1 + logs.1, sum.2 + 1, point.family == Family::Variation);
             }
         }
     }
-    let is_variation = |name: &str| {
-        let of = |point: &Point| point.family == Family::Variation && point.name == name;
-        those.iter().any(|scene| scene.points.iter().any(of))
-    };
-    let everywhere = sums.into_iter().filter(|(_, (_, _, count))| *count == those.len());
+    let everywhere = sums.into_iter().filter(|(_, (_, _, count, _))| *count == those.len());
     let mut all: Vec<Overall> = everywhere
-        .map(|(name, (error, time, count))| Overall {
+        .map(|(name, (error, time, count, is_variation))| Overall {
             is_preset: name.parse::<Quality>().is_ok(),
-            is_variation: is_variation(&name),
+            is_variation,
             name,
             error: (error / count as f64).exp(),
             milliseconds: (time / count as f64).exp(),
@@ -80,6 +76,7 @@ fn better(all: &[Overall], row: &Overall) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::super::front::tests::point;
+    use super::super::results::Point;
     use super::*;
     use crate::plan::SceneTraits;
     use crate::scene::Scene;
