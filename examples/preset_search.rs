@@ -28,7 +28,7 @@ struct Group {
     value: fn(&Settings) -> String,
 }
 
-const DIRECTIONS: [[u32; 4]; 5] = [[3, 3, 3, 6], [4, 4, 4, 8], [4, 5, 5, 8], [5, 6, 5, 10], [6, 8, 6, 12]];
+const DIRECTIONS: [[u32; 4]; 4] = [[4, 4, 4, 8], [4, 5, 5, 8], [5, 6, 5, 10], [6, 8, 6, 12]];
 const SUNS: [u32; 5] = [32, 40, 48, 64, 80];
 const ALTITUDES: [u32; 5] = [12, 14, 18, 24, 32];
 const ORDERS: [u32; 4] = [3, 4, 5, 6];
