@@ -9,6 +9,7 @@
 //! would change.
 
 use std::collections::HashMap;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use welkin::gpu::DeviceRequest;
@@ -154,44 +155,56 @@ impl Search {
 
     /// From the start until pictures take too long or nothing can be finer.
     fn walk(&mut self, most_ms: f64) {
-        println!(
-            "| {} | error % | worst % | ms | what else: error and time, over this |",
-            GROUPS.map(|group| group.name).join(" | ")
-        );
+        let names = GROUPS.map(|group| group.name).join(" | ");
+        println!("| {names} | error % | worst % | ms | finer: error and time, over this |");
         println!("|{}", "---|".repeat(GROUPS.len() + 4));
         let mut place = START;
         loop {
             let here = self.price(place);
-            let finer: Vec<(usize, Place)> = (0..GROUPS.len())
-                .filter(|&group| place[group] + 1 < GROUPS[group].count)
-                .map(|group| (group, std::array::from_fn(|i| place[i] + usize::from(i == group))))
-                .collect();
-            let tried: Vec<(usize, Place, Price)> =
-                finer.into_iter().map(|(group, place)| (group, place, self.price(place))).collect();
-            let ratios = |price: &Price| (price.error / here.error, price.milliseconds / here.milliseconds);
-            let words: Vec<String> = tried
-                .iter()
-                .map(|(group, _, price)| {
-                    format!("{} {:.3}, {:.2}", GROUPS[*group].name, ratios(price).0, ratios(price).1)
-                })
-                .collect();
+            let finer: Vec<Finer> = self.refinements(place, here);
+            let words: Vec<String> = finer.iter().map(ToString::to_string).collect();
             let at = settings(place);
-            let values = GROUPS.iter().map(|group| (group.value)(&at)).collect::<Vec<_>>().join(" | ");
-            println!(
-                "| {values} | {:.3} | {:.2} | {:.0} | {} |",
-                100.0 * here.error,
-                100.0 * here.worst,
-                here.milliseconds,
-                words.join("; ")
-            );
-            // What costs nothing that can be measured is worth any gain.
-            let worth = |price: &Price| -ratios(price).0.ln() / ratios(price).1.max(1.02).ln();
-            let best = tried.iter().max_by(|a, b| worth(&a.2).total_cmp(&worth(&b.2)));
-            match best {
-                Some((_, next, price)) if price.milliseconds <= most_ms => place = *next,
+            let values = GROUPS.map(|group| (group.value)(&at)).join(" | ");
+            let Price { error, worst, milliseconds } = here;
+            let errors = format!("{:.3} | {:.2}", 100.0 * error, 100.0 * worst);
+            println!("| {values} | {errors} | {milliseconds:.0} | {} |", words.join("; "));
+            match finer.iter().max_by(|a, b| a.worth().total_cmp(&b.worth())) {
+                Some(best) if best.time * milliseconds <= most_ms => place = best.place,
                 _ => return,
             }
         }
+    }
+
+    /// One group finer, each in turn.
+    fn refinements(&mut self, place: Place, here: Price) -> Vec<Finer> {
+        let groups = (0..GROUPS.len()).filter(|&group| place[group] + 1 < GROUPS[group].count);
+        let mut finer = |group| {
+            let place = std::array::from_fn(|i| place[i] + usize::from(i == group));
+            let Price { error, milliseconds, .. } = self.price(place);
+            Finer { group, place, error: error / here.error, time: milliseconds / here.milliseconds }
+        };
+        groups.map(&mut finer).collect()
+    }
+}
+
+/// A place where one group is finer; error and time over those of the place before.
+struct Finer {
+    group: usize,
+    place: Place,
+    error: f64,
+    time: f64,
+}
+
+impl Finer {
+    /// By how much the error falls for the time, in logarithms. What costs nothing that can be measured is worth any gain.
+    fn worth(&self) -> f64 {
+        -self.error.ln() / self.time.max(1.02).ln()
+    }
+}
+
+impl fmt::Display for Finer {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} {:.3}, {:.2}", GROUPS[self.group].name, self.error, self.time)
     }
 }
 

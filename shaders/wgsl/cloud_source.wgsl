@@ -77,7 +77,14 @@ fn seen(sample: Sample, attenuation: f32) -> f32 {
     return exp(-a * sample.before) * (1.0 - exp(-a * sample.step)) / a;
 }
 
-// Light of the air behind the step that droplets scatter by small angles only, as a share: e^(-q tau) - e^(-tau).
+// What droplets send, and of the light behind the step the share that they scatter by small angles only, where what is behind
+// is left to who asks: air that a view ray rises through.
+struct CloudLight {
+    radiance: vec3<f32>,
+    passed: f32,
+}
+
+// Light behind the step that droplets scatter by small angles only, as a share: e^(-q tau) - e^(-tau).
 fn nearly_straight(sample: Sample, matter: CloudMatter) -> f32 {
     let before = exp(-matter.similarity * sample.before) - exp(-sample.before);
     let after = sample.before + sample.step;
@@ -135,14 +142,16 @@ fn depth_to_light(sample: Sample, light: u32, takeover_m: f32) -> f32 {
     return near + depth_beyond(sample, toward, near_m, light);
 }
 
-// Radiance that a step adds, before the air in front of it.
-fn step_radiance(
-    sample: Sample, view: vec3<f32>, phase: ptr<function, array<f32, PHASE_COUNT>>
-) -> vec3<f32> {
+// Light of a step, before the air in front of it.
+fn step_light(sample: Sample, view: vec3<f32>, phase: ptr<function, array<f32, PHASE_COUNT>>) -> CloudLight {
     let matter = cloud_matter[sample.layer];
     let takeover_m = NEAR_CELLS * cell_m(level_of(sample.map));
     var radiance = vec3<f32>(0.0);
+    var passed = 0.0;
 #ifdef CLOUD_ORDINATES
+    let rises = dot(view, sample.up) > 0.0;
+    let straight = nearly_straight(sample, matter);
+    passed = select(0.0, dot(matter.albedo, vec3<f32>(1.0 / 3.0)) * straight, rises);
     let place_m = vec3<f32>(sample.map, sample.altitude_m);
     let levels = levels_at(place_m);
     let to_sun = depth_to_light(sample, ORDINATES_LIGHT, NEAR_TEXELS * texel_width_m(levels));
@@ -172,7 +181,8 @@ fn step_radiance(
             directional += weight * solved.x;
         }
         radiance += weight * solved.y * around.above;
-        radiance += nearly_straight(sample, matter) * select(around.below, around.above, dot(view, sample.up) > 0.0);
+        // The sky is bright at the horizon, and brighter at the sun: it is taken from where it is known for every view.
+        radiance += select(straight, 0.0, rises) * around.below;
 #else
         let depths = grid_sample(
             cloud_light_image, table_sampler, Part(light, LIGHT_COUNT), sample.layer, sample.map, sample.height
@@ -183,5 +193,5 @@ fn step_radiance(
 #endif
         radiance += directional * light_in_air(light, sample.altitude_m, mu_s);
     }
-    return matter.albedo * radiance;
+    return CloudLight(matter.albedo * radiance, passed);
 }

@@ -3,7 +3,7 @@
 
 #import welkin::cloud_field::{cloud_layers, eroded, layer_body, layer_density, CLOUD_LAYER_COUNT, CLOUD_LAYER_SLOTS}
 #import welkin::cloud_skip::gap_m
-#import welkin::cloud_source::{step_radiance, Sample, PHASE_COUNT}
+#import welkin::cloud_source::{step_light, CloudLight, Sample, PHASE_COUNT}
 
 fn is_inside(layer: u32, altitude: f32) -> bool {
     let up_m = altitude - cloud_layers[layer].base_m;
@@ -85,23 +85,25 @@ struct CloudStep {
 }
 
 // Light of the clouds in a step, before the air.
-fn from_clouds(step: CloudStep, view: vec3<f32>, phase: ptr<function, array<f32, PHASE_COUNT>>) -> vec3<f32> {
+fn from_clouds(step: CloudStep, view: vec3<f32>, phase: ptr<function, array<f32, PHASE_COUNT>>) -> CloudLight {
     var sample: Sample;
     sample.map = step.map;
     sample.altitude_m = step.altitude_m;
     sample.up = step.up;
     sample.before = step.before;
     sample.step = step.within;
-    var light = vec3<f32>(0.0);
+    var light: CloudLight;
     for (var layer = 0u; layer < CLOUD_LAYER_COUNT; layer++) {
         if is_inside(layer, step.altitude_m) {
             sample.layer = layer;
             sample.height = (step.altitude_m - cloud_layers[layer].base_m) / cloud_layers[layer].thickness_m;
 #if CLOUD_LAYER_COUNT > 1
             let share = layer_extinction(layer, step.map, step.altitude_m) / step.extinction;
-            light += share * step_radiance(sample, view, phase);
+            let part = step_light(sample, view, phase);
+            light.radiance += share * part.radiance;
+            light.passed += share * part.passed;
 #else
-            light += step_radiance(sample, view, phase);
+            light = step_light(sample, view, phase);
 #endif
         }
     }

@@ -54,8 +54,9 @@ const STEP_GROWTH: f32 = #{CLOUD_STEP_PERMILLE}.0 * 0.001;
 
 struct Sum {
     radiance: vec3<f32>,
-    // Optical depth of clouds so far.
+    // Optical depth of clouds so far, and the share of the sky's light behind them that they scatter by small angles only.
     clouds: f32,
+    passed: f32,
     // int t dT, m.
     weighted_m: f32,
 }
@@ -152,9 +153,16 @@ fn add_light(
     let up = normalize(vec3<f32>(p.xy, p.z + atmosphere.radius_m));
     let within = (*march).extinction * (*march).step_m;
     let step = CloudStep((*march).map, (*march).altitude, up, (*march).extinction, (*sum).clouds, within);
-    (*sum).radiance += through_air(air, at_m) * from_clouds(step, (*ray).direction, phase);
+    let light = from_clouds(step, (*ray).direction, phase);
+    (*sum).radiance += through_air(air, at_m) * light.radiance;
+    (*sum).passed += light.passed;
     (*sum).weighted_m += at_m * (exp(-(*sum).clouds) - exp(-(*sum).clouds - within));
     (*sum).clouds += within;
+}
+
+// What clouds let pass of the light of the air behind them.
+fn left_of_air(sum: Sum) -> vec3<f32> {
+    return vec3<f32>(exp(-sum.clouds) + sum.passed);
 }
 
 // Of air that does nothing all is left.
@@ -178,23 +186,23 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     march.boundary_m = next_crossing_m(&ray, 0.0);
     loop {
         let is_found = sum.clouds < OPAQUE && find_cloud(&march, &ray, offset, sum.clouds);
-        pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), march.t_m);
+        pass_air(&air, &ray, left_of_air(sum), march.t_m);
         if !is_found {
             break;
         }
         add_light(&sum, &march, &ray, &phase, &air);
         march.t_m += march.step_m;
-        pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), march.t_m);
+        pass_air(&air, &ray, left_of_air(sum), march.t_m);
     }
     var ground = vec2<f32>(1.0);
     if ray.end_m < NEVER_M {
-        pass_air(&air, &ray, vec3<f32>(exp(-sum.clouds)), ray.end_m);
+        pass_air(&air, &ray, left_of_air(sum), ray.end_m);
         follow_air(&air, &ray);
         let end = to_map(atmosphere.radius_m, position_m(&ray, ray.end_m));
         let altitude = max(altitude_m(&ray, ray.end_m), 0.0);
         ground = left_on_surface(&air, end, altitude);
     } else {
-        leave_air(&air, &ray, vec3<f32>(exp(-sum.clouds)));
+        leave_air(&air, &ray, left_of_air(sum));
     }
     let transmittance = select(exp(-sum.clouds), 0.0, sum.clouds >= OPAQUE);
 #ifdef CLOUD_DISTANCE

@@ -18,7 +18,7 @@
 #ifdef CLOUDS
 #import welkin::media_step::empty_ahead_m
 #endif
-#import welkin::media_sum::{add_volumes, cloudiness, depth_of, stretch_of, Sum}
+#import welkin::media_sum::{add_volumes, cloudiness, depth_of, left_of_air, stretch_of, Sum}
 #ifdef CLOUDS
 #import welkin::media_sum::add_clouds
 #endif
@@ -62,7 +62,7 @@ fn advance(march: ptr<function, March>, sum: ptr<function, Sum>, air: ptr<functi
     }
     if is_empty {
         follow_air(air, ray);
-        pass_air(air, ray, exp(-before), boundary_m);
+        pass_air(air, ray, left_of_air(*sum), boundary_m);
         (*march).t_m = boundary_m;
         return;
     }
@@ -70,7 +70,7 @@ fn advance(march: ptr<function, March>, sum: ptr<function, Sum>, air: ptr<functi
     let empty_m = empty_ahead_m(ray, t_m, here);
     if empty_m > 0.0 {
         (*march).t_m = min(t_m + empty_m, boundary_m);
-        pass_air(air, ray, exp(-before), (*march).t_m);
+        pass_air(air, ray, left_of_air(*sum), (*march).t_m);
         return;
     }
 #endif
@@ -85,5 +85,5 @@ fn advance(march: ptr<function, March>, sum: ptr<function, Sum>, air: ptr<functi
 #endif
     add_volumes(sum, stretch, step, (*ray).pixel, here.cluster, air_leaves);
     (*march).t_m += step.length_m;
-    pass_air(air, ray, exp(-depth_of(*sum)), (*march).t_m);
+    pass_air(air, ray, left_of_air(*sum), (*march).t_m);
 }

@@ -35,6 +35,8 @@ struct Sum {
     // Optical depth so far: of clouds, of fog and volumes.
     clouds: f32,
     local: vec3<f32>,
+    // Of the sky's light behind clouds, the share that they scatter by small angles only.
+    passed_by_clouds: f32,
     // That of the medium similar to all of them: welkin::volume_source.
     similar: vec3<f32>,
 }
@@ -49,6 +51,11 @@ struct Found {
 
 fn depth_of(sum: Sum) -> vec3<f32> {
     return vec3<f32>(sum.clouds) + sum.local;
+}
+
+// What media let pass of the light of the air behind them.
+fn left_of_air(sum: Sum) -> vec3<f32> {
+    return (exp(-sum.clouds) + sum.passed_by_clouds) * exp(-sum.local);
 }
 
 // Extinction of clouds in a step, 1/m.
@@ -79,7 +86,8 @@ fn add_clouds(sum: ptr<function, Sum>, stretch: Stretch, step: Step, cloudy: f32
     let up = normalize(vec3<f32>(at.p.xy, at.p.z + atmosphere.radius_m));
     let clouds = CloudStep(at.map, at.altitude_m, up, cloudy, (*sum).clouds, cloudy * step.length_m);
     let light = from_clouds(clouds, stretch.view, phase);
-    (*sum).radiance += air_leaves * exp(-(*sum).local) * mean_transmittance(step.extinction * step.length_m) * light;
+    (*sum).radiance += air_leaves * exp(-(*sum).local) * mean_transmittance(step.extinction * step.length_m) * light.radiance;
+    (*sum).passed_by_clouds += light.passed;
 #if LOCAL_LIGHT_COUNT > 0
     (*sum).radiance += air_leaves * clouds_lit_by_lamps(at, cloudy, stretch, cluster);
 #endif
@@ -139,10 +147,10 @@ fn found(sum: Sum, air: ptr<function, Air>) -> Found {
 // What lies before the ray's end.
 fn found_at_end(sum: Sum, air: ptr<function, Air>, ray: ptr<function, Ray>) -> Found {
     if (*ray).end_m >= NEVER_M {
-        leave_air(air, ray, exp(-depth_of(sum)));
+        leave_air(air, ray, left_of_air(sum));
         return found(sum, air);
     }
-    pass_air(air, ray, exp(-depth_of(sum)), (*ray).end_m);
+    pass_air(air, ray, left_of_air(sum), (*ray).end_m);
     follow_air(air, ray);
     var all = found(sum, air);
     if (*ray).meets_ground {

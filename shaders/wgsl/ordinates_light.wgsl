@@ -7,8 +7,8 @@
 // with beam = e^(-q tau_sun), q = 1 - f of the droplets, c the true extinction and tau the true optical depth along the view so far. The sun's
 // light that was scattered by small angles only is not part of it: add the bands of passes::ordinates::coefficients.
 //
-// Light of the sky behind the clouds that droplets scatter by small angles only is neither: where the background is a
-// smooth radiance L, add L (e^(-q tau) - e^(-tau)) to L e^(-tau).
+// Light of the sky behind the clouds that droplets scatter by small angles only is neither: of a smooth radiance L behind them,
+// they let L e^(-q tau) pass in place of L e^(-tau).
 //
 // Cells are wide and clouds' lit sides are not: a view ray knows its own depth to the sun, d, and the texels theirs, D. Light
 // falls into clouds about as 1 / (1 + a d), so that it is (1 + a D) / (1 + a d) times the texels' where both are scattered.
