@@ -316,6 +316,29 @@ fn sky_between_clouds_is_brighter_and_the_horizon_below_an_overcast_is_no_bright
     }
 }
 
+#[test]
+fn droplets_that_hardly_turn_light_hide_nothing_of_the_sky_low_above_the_horizon() {
+    let at_the_horizon = |clouds: &str| {
+        let mut scene = day(clouds);
+        scene.camera.direction.elevation_rad = 0.1;
+        scene.camera.vertical_field_of_view_rad = 0.1;
+        scene
+    };
+    // Close by, so that nearly all of the air is behind them.
+    let straight =
+        "[[clouds]]\nkind = \"stratus\"\ncoverage = 1\nwater_g_per_m3 = 1e-3\nphase.henyey_greenstein.g = 0.99\n";
+    let frames = render(&[at_the_horizon(""), at_the_horizon(straight)], settings());
+    let (clear, cloudy) = (&frames[0].frame, &frames[1].frame);
+    let hidden: Vec<usize> = (0..clear.radiance.len())
+        .filter(|&pixel| cloudy.transmittance[pixel][1] < 0.7 * clear.transmittance[pixel][1])
+        .collect();
+    assert!(hidden.len() > 100, "{} pixels", hidden.len());
+    let sum = |frame: &Frame| hidden.iter().map(|&pixel| f64::from(frame.radiance[pixel][1])).sum::<f64>();
+    // 1 - g² of the light is turned, and sky comes back for it. The mean of the sky's half in place of what is behind: 0.86.
+    let ratio = sum(cloudy) / sum(clear);
+    assert!((ratio - 1.0).abs() < 0.03, "{ratio}");
+}
+
 /// Towers in a vacuum over black ground, of droplets that scatter evenly.
 fn towers(droplets: &str, view: &str) -> Scene {
     let text = "preset = \"earth\"\nmedium = []\nplanet.ground_albedo = 0\nsun = { elevation_deg = 30, azimuth_deg = 250 }\n\
